@@ -10540,7 +10540,8 @@ static int demi_cell_bars(dem_world *w, const char *call, int part) {
         "the regions of outlets would not follow it; use dem_body_remove",
         "fields would not follow it: it is sheared, so that images are displaced, which the grids "
         "do not see; use dem_stress_get"};
-    demi_refuse(w, call, "the periodic cell deforms (dem_cell_set), and %s", reason[part]);
+    demi_refuse(w, call, "the periodic cell deforms or is sheared (dem_cell_set), and %s",
+                reason[part]);
     return 1;
 }
 /* Returns L branch, m/s. */
@@ -31074,7 +31075,8 @@ static double demi_volume(const dem_world *w) {
 static int demi_cell_refuse(dem_world *w, const char *call) {
     int count[DEMI_CELL_PARTS], k;
     memset(count, 0, sizeof count);
-    for (k = 0; k < w->wall_count; k++) count[0] += w->walls[k].kind != DEMI_WALL_NONE;
+    for (k = 0; k < w->wall_count; k++)
+        count[DEMI_CELL_WALLS] += w->walls[k].kind != DEMI_WALL_NONE;
     count[DEMI_CELL_RAILS] = demi_rails_in_force(w);
     count[DEMI_CELL_FEEDS] = w->feed_count;
     count[DEMI_CELL_OUTLETS] = w->outlet_count;

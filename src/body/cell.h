@@ -37,7 +37,8 @@ static int demi_cell_bars(dem_world *w, const char *call, int part) {
         "the regions of outlets would not follow it; use dem_body_remove",
         "fields would not follow it: it is sheared, so that images are displaced, which the grids "
         "do not see; use dem_stress_get"};
-    demi_refuse(w, call, "the periodic cell deforms (dem_cell_set), and %s", reason[part]);
+    demi_refuse(w, call, "the periodic cell deforms or is sheared (dem_cell_set), and %s",
+                reason[part]);
     return 1;
 }
 /* Returns L branch, m/s. */

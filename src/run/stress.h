@@ -24,7 +24,8 @@ static double demi_volume(const dem_world *w) {
 static int demi_cell_refuse(dem_world *w, const char *call) {
     int count[DEMI_CELL_PARTS], k;
     memset(count, 0, sizeof count);
-    for (k = 0; k < w->wall_count; k++) count[0] += w->walls[k].kind != DEMI_WALL_NONE;
+    for (k = 0; k < w->wall_count; k++)
+        count[DEMI_CELL_WALLS] += w->walls[k].kind != DEMI_WALL_NONE;
     count[DEMI_CELL_RAILS] = demi_rails_in_force(w);
     count[DEMI_CELL_FEEDS] = w->feed_count;
     count[DEMI_CELL_OUTLETS] = w->outlet_count;

@@ -352,7 +352,7 @@ int main(int argc, char **argv) {
         dem_wall wall = dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
         dem_sphere_add(w, m, DEM_R(0.01), at(0.5, 0.5, 0.5));
         CHECK_EQ(dem_cell_set(w, &d), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(w), "dem_cell_set: the periodic cell deforms (dem_cell_set), and walls would not follow it");
+        CHECK_STR(dem_world_error_get(w), "dem_cell_set: the periodic cell deforms or is sheared (dem_cell_set), and walls would not follow it");
         CHECK_EQ(dem_wall_remove(w, wall), DEM_OK);
         both.rate_most.x = 1;
         CHECK_EQ(dem_cell_set(w, &both), DEM_ERROR_ARGUMENT);
@@ -371,7 +371,7 @@ int main(int argc, char **argv) {
         field.box = box_of(0, 0, 0, 1, 1, 1);
         field.cells[0] = field.cells[1] = field.cells[2] = 1;
         CHECK_EQ(dem_field_add(w, &field).id, 0);
-        CHECK_STR(dem_world_error_get(w), "dem_field_add: the periodic cell deforms (dem_cell_set), and fields would not follow it: it is sheared");
+        CHECK_STR(dem_world_error_get(w), "dem_field_add: the periodic cell deforms or is sheared (dem_cell_set), and fields would not follow it: it is sheared");
         d = cell_rates(0, 0, -1e9, 0);
         dem_world_destroy(w);
         w = dem_world_create(&desc);
