@@ -1397,7 +1397,9 @@ class Material(Id):
 
 @_struct
 class Wall(Id):
-    """counts from 1"""
+    """Counts from 1. A wall added after a removal gets an id of a later generation, such as 262145: ids are names, not
+    indices.
+    """
     __slots__ = ()
     c_name = 'dem_wall'
     rows = [
@@ -1534,7 +1536,9 @@ class Wall(Id):
 
 @_struct
 class Field(Id):
-    """counts from 1"""
+    """Counts from 1. A wall added after a removal gets an id of a later generation, such as 262145: ids are names, not
+    indices.
+    """
     __slots__ = ()
     c_name = 'dem_field'
     rows = [
@@ -2131,6 +2135,10 @@ class WorldDesc(Struct):
         ('ellipsoid_overlap', Overlap, ''),
         ('cluster_contacts', ClusterContacts, ''),
         ('orientations', ctypes.c_int, '1 follows the orientations of spheres too'),
+        ('overlap_stop', Real,
+         '0 to 1, in radii (see dem_counters.overlap_max): a step after which an overlap is larger ends the '
+         'run with DEM_ERROR_STOPPED, because grains are jammed or too soft. 0 means off. The report and '
+         'dem_progress_print name an overlap above 0.05.'),
         ('ledger', ctypes.c_int, '1 accounts for energy, see dem_ledger_get'),
         ('threads', ctypes.c_int,
          'Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are used '
@@ -3800,7 +3808,7 @@ class World(WorldBase):
             growth=None, growth_user=None, growth_interval=0, groups=None, force=None, body_force=None,
             force_user=None, integrator=0, dt=0, allow_large_dt=0, impact_speed=0, response=0, cone=0, solver=0,
             sweeps=0, tolerance=0, cold_start=0, unsolved_stops=0, search=0, skin=0, rotation=0, ellipsoid_overlap=0,
-            cluster_contacts=0, orientations=0, ledger=0, threads=0, allocator=None):
+            cluster_contacts=0, orientations=0, overlap_stop=0, ledger=0, threads=0, allocator=None):
         """Creates an empty world. ArgumentError says which value is out of range.
 
         gravity: m/s2
@@ -3869,6 +3877,9 @@ class World(WorldBase):
         skin: m, margin of the neighbour list; 0 means chosen for speed; < 0 means none: the list is rebuilt in every
             step.
         orientations: 1 follows the orientations of spheres too
+        overlap_stop: 0 to 1, in radii (see dem_counters.overlap_max): a step after which an overlap is larger ends
+            the run with DEM_ERROR_STOPPED, because grains are jammed or too soft. 0 means off. The report and
+            dem_progress_print name an overlap above 0.05.
         ledger: 1 accounts for energy, see dem_ledger_get
         threads: Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are used
             while that is faster; results are the same.
@@ -3887,7 +3898,8 @@ class World(WorldBase):
             solver=solver, sweeps=sweeps, tolerance=tolerance, cold_start=cold_start,
             unsolved_stops=unsolved_stops, search=search, skin=skin, rotation=rotation,
             ellipsoid_overlap=ellipsoid_overlap, cluster_contacts=cluster_contacts,
-            orientations=orientations, ledger=ledger, threads=threads, allocator=allocator))
+            orientations=orientations, overlap_stop=overlap_stop, ledger=ledger, threads=threads,
+            allocator=allocator))
 
     @property
     def error(self):
@@ -4490,10 +4502,10 @@ class World(WorldBase):
         DEM_ERROR_UNSTABLE a position, velocity, force or number of a body is not finite, two bodies overlap by the
         smaller radius, a body and a wall by that of the body, or a motion or desc.growth returns impossible values
         DEM_ERROR_FILE, DEM_ERROR_FORMAT an output cannot be written; its CSV has other columns DEM_ERROR_STOPPED an
-        output stopped the run; or desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance
-        DEM_ERROR_MEMORY The bodies may have moved already; the step then counts as taken. The next call completes it
-        first, here or in a world that has read a checkpoint written meanwhile. The bits are those of a run without
-        the interruption.
+        output stopped the run; desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance; or an
+        overlap is above desc.overlap_stop. The step is complete. DEM_ERROR_MEMORY The bodies may have moved already;
+        the step then counts as taken. The next call completes it first, here or in a world that has read a checkpoint
+        written meanwhile. The bits are those of a run without the interruption.
         """
         self._ok(self._run(_lib.dem_world_step, self._at, steps) if self._context.kept else
             _lib.dem_world_step(self._at, steps))
@@ -5060,9 +5072,9 @@ class World(WorldBase):
         """Reads a checkpoint and replaces the state of the world, which then continues bit for bit. The world must have
         been built like the one that wrote it, with the same desc, materials, pairs, shapes, walls, fields, feeds and
         outlets. Functions and user pointers are not stored. Number of threads, allocator, allow_large_dt,
-        unsolved_stops, law_rows and user pointers may differ. Errors: a file that is cut short, damaged, or of
-        another version, precision, DEM_DOMAIN_BODIES or memory layout; a file of another scene, for which the message
-        names the first field that differs, with both values.
+        unsolved_stops, overlap_stop, law_rows and user pointers may differ. Errors: a file that is cut short,
+        damaged, or of another version, precision, DEM_DOMAIN_BODIES or memory layout; a file of another scene, for
+        which the message names the first field that differs, with both values.
         """
         self._ok(_lib.dem_checkpoint_read(self._at, os.fsencode(path)))
 

@@ -250,7 +250,8 @@ DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 /* Reads a checkpoint and replaces the state of the world, which then continues bit for bit. The
    world must have been built like the one that wrote it, with the same desc, materials, pairs,
    shapes, walls, fields, feeds and outlets. Functions and user pointers are not stored. Number of
-   threads, allocator, allow_large_dt, unsolved_stops, law_rows and user pointers may differ.
+   threads, allocator, allow_large_dt, unsolved_stops, overlap_stop, law_rows and user pointers may
+   differ.
    Errors: a file that is cut short, damaged, or of another version, precision, DEM_DOMAIN_BODIES or
    memory layout; a file of another scene, for which the message names the first field that differs,
    with both values. */

@@ -80,8 +80,9 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
                             bodies overlap by the smaller radius, a body and a wall by that of the
                             body, or a motion or desc.growth returns impossible values
        DEM_ERROR_FILE, DEM_ERROR_FORMAT    an output cannot be written; its CSV has other columns
-       DEM_ERROR_STOPPED    an output stopped the run; or desc.unsolved_stops is 1 and the sweeps of
-                            a step did not reach the tolerance
+       DEM_ERROR_STOPPED    an output stopped the run; desc.unsolved_stops is 1 and the sweeps of a
+                            step did not reach the tolerance; or an overlap is above
+                            desc.overlap_stop. The step is complete.
        DEM_ERROR_MEMORY     The bodies may have moved already; the step then counts as taken. The
                             next call completes it first, here or in a world that has read a
                             checkpoint written meanwhile. The bits are those of a run without the

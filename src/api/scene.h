@@ -142,6 +142,10 @@ typedef struct dem_world_desc {
     int orientations;              /* 1 follows the orientations of spheres too */
 
     /* -- running -- */
+    /* 0 to 1, in radii (see dem_counters.overlap_max): a step after which an overlap is larger ends
+       the run with DEM_ERROR_STOPPED, because grains are jammed or too soft. 0 means off. The
+       report and dem_progress_print name an overlap above 0.05. */
+    dem_real overlap_stop;
     int ledger;                    /* 1 accounts for energy, see dem_ledger_get */
     /* Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are
        used while that is faster; results are the same. */

@@ -6,6 +6,7 @@
    --------------------------------------------------------------------------------------------- */
 /* Limits of numbers that enter the library. Within them, squares and quotients stay finite. */
 #define DEMI_FARTHEST 1e15          /* largest m, m/s, rad/s and s */
+#define DEMI_OVERLAP_LIMIT 0.05     /* in radii: above it a material counts as too soft */
 #define DEMI_LEAST 1e-12            /* m, smallest extent of a surface */
 #define DEMI_MOST 1e30              /* largest modulus, density and stiffness, SI units */
 #define DEMI_MOST_RATIO 1e9         /* largest dimensionless coefficient */

@@ -205,6 +205,10 @@ static const demi_field_row demi_booked_rows[] = {
     DEMI_N(energy, 'd', DEMI_TO_SLAB | DEMI_SUM), DEMI_N(inserted, 'd', DEMI_TO_SLAB | DEMI_SUM),
     DEMI_N(removed, 'd', DEMI_TO_SLAB | DEMI_SUM), DEMI_N(throughput, 'd', DEMI_TO_SLAB | DEMI_SUM),
     DEMI_N(overlap_max, 'd', DEMI_TO_SLAB | DEMI_LARGEST), DEMI_N(met, 'u', DEMI_EITHER),
+    DEMI_N(crushed.next, 'd', DEMI_FROM | DEMI_TO_SLAB), DEMI_N(crushed.a, 'i', DEMI_TO_SLAB),
+    DEMI_N(crushed.since, 'd', DEMI_ANY | DEMI_TO_SLAB), DEMI_N(crushed.b, 'i', DEMI_TO_SLAB),
+    DEMI_N(crushed.time, 'd', DEMI_ANY | DEMI_TO_SLAB), DEMI_N(crushed.wall, 'i', DEMI_TO_SLAB),
+    DEMI_N(crushed.none, 'i', 0),
     DEMI_N(speed_max, 'd', DEMI_FROM | DEMI_TO_SLAB | DEMI_HEADS), DEMI_N(due, 'd', 0),
     DEMI_N(residual, 'd', 0), DEMI_N(residual_rms, 'd', 0), DEMI_N(unsolved, 'u', 0),
     DEMI_N(sweeps, 'i', 0), DEMI_N(none, 'i', 0), DEMI_ROW_END};
@@ -288,6 +292,8 @@ static const demi_field_row demi_world_desc_rows[] = {
     DEMI_ROW_SAID(threads, 'i', DEMI_FROM | DEMI_FREE, 64, "threads must be 0 to 64, where 0 means "
                   "as many as OpenMP offers"), DEMI_ROW_FREE(dem_world_desc, allocator),
     DEMI_ROW_FREE(dem_world_desc, allow_large_dt), DEMI_ROW_FREE(dem_world_desc, unsolved_stops),
+    DEMI_ROW_SAID(overlap_stop, 'r', DEMI_FROM | DEMI_FREE, 1, "overlap_stop must be 0 to 1, in "
+                  "radii; 0 means off"),
     DEMI_ROW_FREE(dem_world_desc, law_rows), DEMI_ROW_FREE(dem_world_desc, law_user),
     DEMI_ROW_FREE(dem_world_desc, force_user),
     DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_FREE(dem_world_desc, growth_user),

@@ -84,9 +84,18 @@ typedef struct demi_levels {       /* >>search */
     double fine;                   /* m, largest radius of the finest class */
     double tests[2];               /* estimated distance tests per body: one grid, levels */
 } demi_levels;
+/* Overlaps above DEMI_OVERLAP_LIMIT since the last reset (demi_crushed_note). */
+typedef struct demi_crushed {
+    double next;                   /* relative to the radius: overlap that is noted next; 0: none
+                                      has been */
+    double since, time;            /* s, of the first and of the last note */
+    int32_t a, b, wall, none;      /* of the last: slots of the bodies + 1 (b 0: a wall), id of the
+                                      wall; padding, 0 */
+} demi_crushed;
 typedef struct demi_booked {       /* >>ledger: totals and maxima since the beginning */
     double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
     double overlap_max, speed_max; /* relative to the radius; m/s */
+    demi_crushed crushed;
     uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
     double due[5];                 /* J: energies that impulses, walls and force fields will take
                                       or give in the next step, see demi_impulses_tell */

@@ -55,7 +55,7 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
                       "are in kg/m3 (water has 1000), was %g g/cm3 meant?", i + 1,
                       (double)m->density, (double)(m->density < 10 ? m->density : m->density/1000));
-        if (!w->desc.law && !(m->stiffness > 0) &&
+        if (demi_response_is(w, DEMI_LASTING) && !w->desc.law && !(m->stiffness > 0) &&
             (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: "
                       "moduli are in Pa (glass has 7e10, softened grains 1e6 to 1e8)", i + 1,
@@ -671,9 +671,10 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
 /* Estimates overlaps, divided by the radius, between two of the smallest grains of each material:
    in an impact at the speed a->speed, and under the weight of all grains. The weight is that of a
    bed that covers the area of the scene normal to gravity; each grain bears the weight on (2 r)^2
-   of that area (not in planar worlds). Reports what exceeds 0.05, with the modulus that would keep
-   it below 0.01: an overlap follows from the modulus to the power -2/5 (impact) or -2/3 (weight)
-   for Hertz's law, and -1/2 or -1 for linear springs. */
+   of that area (not in planar worlds). Warns of what exceeds DEMI_OVERLAP_LIMIT, with the modulus
+   that would keep it below: an overlap follows from the modulus to the power -2/5 (impact) or -2/3
+   (weight) for Hertz's law, and from a given stiffness to the power -1/2 or -1. A stiffness that
+   follows from a modulus is in proportion to its power 4/5. */
 static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_findings *f) {
     const double g = (double)demi_length(w->desc.gravity), v = (double)a->speed;
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
@@ -705,16 +706,19 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
         deep[0] = hertz ? demi_pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
         deep[1] = (hertz ? demi_pow(force/kn, 2.0/3) : force/kn)/r;
         for (k = 0; k < 2; k++) {
-            const double more = demi_pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
-            if (!(deep[k] > 0.05)) continue;
-            demi_find(f, deep[k] > 0.3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "grains of "
-                      "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s; "
-                      "%s of %.2g %s would keep it below 0.01", i + 1, r, deep[k],
+            const int given = w->materials[i].stiffness > 0;
+            /* 1.05: so that the rounded value suffices, too */
+            const double more = 1.05*demi_pow(deep[k]/DEMI_OVERLAP_LIMIT,
+                                         k ? (hertz ? 1.5 : given ? 1 : 1.25)
+                                           : hertz || !given ? 2.5 : 2);
+            if (!(deep[k] > DEMI_OVERLAP_LIMIT)) continue;
+            demi_find(f, DEM_SEVERITY_WARNING, "grains of material %d (radius %g m) will overlap "
+                      "by %.2g of their radius %s%.3g %s; %s of %.2g %s would keep it below %g",
+                      i + 1, r, deep[k],
                       k ? "under a weight of " : "at ", k ? force : v, k ? "N each" : "m/s",
-                      w->materials[i].stiffness > 0 ? "a stiffness" : "a Young's modulus",
-                      more*(double)(w->materials[i].stiffness > 0 ? w->materials[i].stiffness
-                                                                  : w->materials[i].young),
-                      w->materials[i].stiffness > 0 ? "N/m" : "Pa");
+                      given ? "a stiffness" : "a Young's modulus",
+                      more*(double)(given ? w->materials[i].stiffness : w->materials[i].young),
+                      given ? "N/m" : "Pa", DEMI_OVERLAP_LIMIT);
         }
     }
 }

@@ -339,7 +339,7 @@ static void demi_report(const dem_world *world, FILE *out) {
     dem_world look = *world, *w = &look;        /* computes missing effects in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
-    char few[48] = "";
+    char few[48] = "", crushed[128];
     dem_advice a;
     int i, walls = 0;
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
@@ -382,9 +382,9 @@ static void demi_report(const dem_world *world, FILE *out) {
             w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
             demi_kernel_choose(w));
     demi_idle_report(w, out);
-    fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->booked.overlap_max,
-            w->booked.overlap_max > 0.05 ? "  (above 0.05: use a stiffer material or lower speeds)"
-                : "");
+    fprintf(out, "overlap    %.3g of the radius at most so far%s%s\n", w->booked.overlap_max,
+            w->booked.crushed.next > 0 ? ", above 0.05 " : "",
+            demi_crushed_text(w, crushed, sizeof crushed));
     dem_pairs_print(w, out);
     demi_flows_report(w, out);
     if (w->desc.ledger) demi_ledger_report(w, out);

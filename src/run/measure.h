@@ -41,6 +41,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
 DEM_API void dem_overlap_max_reset(dem_world *w) {
     if (demi_null(w, __func__, w, "world")) return;
     w->booked.overlap_max = 0;
+    memset(&w->booked.crushed, 0, sizeof w->booked.crushed);
 }
 
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {

@@ -169,3 +169,73 @@ static int demi_walk_next(const dem_world *w, demi_walk *c) {
     }
     return 0;
 }
+
+/* Finds the contact with the largest overlap, relative to the smaller radius: bodies *a and *b, or
+   body *a and *wall, with *b below 0. Returns that overlap, 0 if nothing overlaps. It visits all
+   contacts; demi_overlap knows the value without. */
+static double demi_deepest(const dem_world *w, int *a, int *b, int *wall) {
+    double most = 0;
+    int d, k;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        const demi_kept *kept = demi_kept_of(w, d);
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
+            const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)k;
+            const dem_real p = demi_near_radius(w, at, 0), q = demi_near_radius(w, at, 1);
+            const double deep = (double)((p + q - demi_length(demi_near_way(w, at)))/
+                                         DEMI_MIN(p, q));
+            if (!(deep > most) || (w->joint_count && demi_parted(w, w->near.a[at], w->near.b[at],
+                                                                 -1))) continue;
+            most = deep;
+            *a = w->near.a[at];
+            *b = w->near.b[at];
+        }
+        for (k = 0; k < domain->kept; k++) {
+            if (!((double)kept[k].deep > most) || (w->joint_count && demi_parted(w, kept[k].a,
+                kept[k].b, kept[k].wall))) continue;
+            most = (double)kept[k].deep;
+            *a = kept[k].a;
+            *b = kept[k].b;
+            *wall = kept[k].wall;
+        }
+    }
+    return most;
+}
+/* Returns the largest overlap in the forces just computed, relative to the smaller radius. */
+static double demi_overlap(const dem_world *w) {
+    double overlap = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) overlap = DEMI_MAX(overlap, w->domains[d].overlap);
+    return overlap;
+}
+/* Notes where the overlap is that has just become larger than crushed.next. Each note raises that
+   limit to a value 1.1^n DEMI_OVERLAP_LIMIT, so that the contacts are visited at most 32 times in a
+   run, and the notes of slabs merge to that of the whole world. */
+static void demi_crushed_note(dem_world *w) {
+    demi_crushed *c = &w->booked.crushed;
+    int a = 0, b = 0, wall = 0;
+    if (!(demi_deepest(w, &a, &b, &wall) > 0)) return;
+    if (!(c->next > 0)) c->since = w->clock.time;
+    c->time = w->clock.time;
+    for (c->next = DEMI_OVERLAP_LIMIT; c->next < w->booked.overlap_max;) c->next *= 1.1;
+    c->a = (int32_t)w->bodies.slot[a] + 1;
+    c->b = b < 0 ? 0 : (int32_t)w->bodies.slot[b] + 1;
+    c->wall = b < 0 ? w->walls[wall].id : 0;
+}
+/* Merges the note of a slab into that of the whole world. */
+static void demi_crushed_add(demi_crushed *c, const demi_crushed *part) {
+    const double since = c->next > 0 ? DEMI_MIN(c->since, part->since) : part->since;
+    if (!(part->next > 0)) return;
+    if (part->next > c->next || (!(part->next < c->next) && part->time < c->time)) *c = *part;
+    c->since = since;
+}
+/* Writes since when overlaps have been above the limit and where the largest was, for the report
+   and the progress line; "" if none was above it. Returns `text`. */
+static const char *demi_crushed_text(const dem_world *w, char *text, size_t size) {
+    const demi_crushed *c = &w->booked.crushed;
+    *text = 0;
+    if (c->next > 0)
+        snprintf(text, size, "since t = %.4g s, body %d, %s %d: jammed or too soft", c->since,
+                 (int)c->a, c->b ? "body" : "wall", (int)(c->b ? c->b : c->wall));
+    return text;
+}

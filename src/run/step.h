@@ -297,44 +297,19 @@ static int demi_forces(dem_world *w) {
         if (!demi_response_is(w, DEMI_MIDWAY)) demi_loads_add(c, f, power, dt);
     }
     if (demi_exchanges(w)) demi_walls_rates(w);
-    for (d = 0; d < w->domain_count; d++)
-        w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, w->domains[d].overlap);
+    w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, demi_overlap(w));
+    if (w->booked.overlap_max > DEMI_MAX(w->booked.crushed.next, DEMI_OVERLAP_LIMIT))
+        demi_crushed_note(w);
     if (w->material_count == 1 && w->booked.overlap_max > 0) w->booked.met[0] = 1;
     response->book(w);
     return 1;
 }
 
-/* Finds the two bodies with the largest overlap, relative to the smaller radius. Returns that
-   overlap; 0 and no bodies if none overlap. */
-static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
-    double most = 0;
-    int d, k;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        const demi_kept *kept = demi_kept_of(w, d);
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
-            const int at = d*w->near.stride + k, a = w->near.a[at], b = w->near.b[at];
-            const dem_real p = demi_near_radius(w, (size_t)at, 0);
-            const dem_real q = demi_near_radius(w, (size_t)at, 1);
-            const dem_real way = demi_length(demi_near_way(w, (size_t)at));
-            const double deep = (double)((p + q - way)/DEMI_MIN(p, q));
-            if (deep > most) { most = deep; *first = a; *second = b; }
-        }
-        for (k = 0; k < domain->kept; k++)
-            if (kept[k].b >= 0 && (double)kept[k].deep > most) {
-                most = (double)kept[k].deep;
-                *first = kept[k].a;
-                *second = kept[k].b;
-            }
-    }
-    return most;
-}
-
 /* Fails with a message that names the body at fault, and the likely cause. Tested in this order:
-   numbers that are not finite, an overlap with a wall or between bodies of at least the radius, and
-   otherwise the body with the largest speed or acceleration. */
+   numbers that are not finite, an overlap of at least the radius, and otherwise the body with the
+   largest speed or acceleration. */
 static dem_result demi_unstable(dem_world *w) {
-    int i, d, first = 0, second = 0;
+    int i, d, first = 0, second = 0, wall = 0;
     double deepest;
     for (i = 0; i < w->bodies.count; i++)
         if (!demi_finite3(demi_at(w->bodies.pos + 4*i)) ||
@@ -363,18 +338,7 @@ static dem_result demi_unstable(dem_world *w) {
                              (double)w->bodies.reals[i], (double)w->bodies.rates[i],
                              (double)w->clock.dt);
     }
-    for (d = 0; d < w->domain_count; d++)
-        for (i = 0; i < w->domains[d].kept; i++) {
-            const demi_kept *c = demi_kept_of(w, d) + i;
-            if (c->b < 0 && c->deep >= 1)
-                return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
-                                 "overlaps wall %d by %.3g of its radius, must be below 1; it "
-                                 "started inside the wall, hit it too fast for dt = %g s, or the "
-                                 "material is too soft", (unsigned long long)w->clock.steps,
-                                 (unsigned)w->bodies.slot[c->a] + 1, (int)w->walls[c->wall].id,
-                                 (double)c->deep, (double)w->clock.dt);
-        }
-    deepest = demi_deepest_pair(w, &first, &second);
+    deepest = demi_deepest(w, &first, &second, &wall);
     if (!(deepest >= 1)) {
         double most = 0;
         for (i = 0; i < w->bodies.count; i++)
@@ -390,6 +354,13 @@ static dem_result demi_unstable(dem_world *w) {
                          (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[first] + 1,
                          (double)w->clock.dt);
     }
+    if (second < 0)
+        return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
+                         "overlaps wall %d by %.3g of its radius, must be below 1; it "
+                         "started inside the wall, hit it too fast for dt = %g s, or the "
+                         "material is too soft", (unsigned long long)w->clock.steps,
+                         (unsigned)w->bodies.slot[first] + 1, (int)w->walls[wall].id, deepest,
+                         (double)w->clock.dt);
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: bodies %u and %u overlap "
                      "by %.3g of the smaller radius, must be below 1; they started inside each "
                      "other, collided too fast for dt = %g s, or the material is too soft",
@@ -495,14 +466,6 @@ static dem_result demi_step_move(dem_world *w) {
     w->margin.walls_gone += w->wall_fastest*(double)w->clock.dt;
     w->wall_fastest = 0;
     return DEM_OK;
-}
-
-/* Returns the largest overlap in the forces just computed, relative to the smaller radius. */
-static double demi_overlap(const dem_world *w) {
-    double overlap = 0;
-    int d;
-    for (d = 0; d < w->domain_count; d++) overlap = DEMI_MAX(overlap, w->domains[d].overlap);
-    return overlap;
 }
 
 /* Integrates the user-defined numbers of work group d over the step: by body_reals_fn, or by the
@@ -716,8 +679,22 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && h->events.n.on) demi_events_take(h);
     return result;
 }
-/* The part of a step after its move: 2 search, 3 to 5 forces. With impulses,
-   desc.unsolved_stops makes a step fail whose solver did not reach its tolerance. */
+/* Fails after a step with an overlap above desc.overlap_stop. */
+static dem_result demi_member_crushed(dem_world *w) {
+    const double overlap = demi_overlap(w);
+    int a = 0, b = 0, wall = 0;
+    if (!(overlap > (double)w->desc.overlap_stop)) return DEM_OK;
+    demi_deepest(w, &a, &b, &wall);
+    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: step %llu: body %u overlaps %s %u by "
+                     "%.3g R, must be at most desc.overlap_stop = %g R; grains are jammed or too "
+                     "soft: take a higher modulus, more room or lower speeds, or go on with "
+                     "desc.overlap_stop = 0", (unsigned long long)w->clock.steps,
+                     (unsigned)w->bodies.slot[a] + 1, b < 0 ? "wall" : "body",
+                     b < 0 ? (unsigned)w->walls[wall].id : (unsigned)w->bodies.slot[b] + 1,
+                     overlap, (double)w->desc.overlap_stop);
+}
+/* The part of a step after its move: 2 search, 3 to 5 forces. desc.overlap_stop and, with impulses,
+   desc.unsolved_stops make a step fail that is complete; all members then agree that it is. */
 static dem_result demi_step_answer(dem_world *h) {
     const uint64_t unsolved = h->booked.unsolved;
     const int search = demi_list_due(h);
@@ -730,6 +707,8 @@ static dem_result demi_step_answer(dem_world *h) {
     if (result == DEM_OK) result = demi_all(h, demi_member_end);
     if (result != DEM_OK) return result;
     h->stage.moved = 0;
+    if (demi_member(h, 0)->desc.overlap_stop > 0) result = demi_all_agree(h, demi_member_crushed);
+    if (result != DEM_OK) return result;
     if (!h->desc.unsolved_stops || h->booked.unsolved == unsolved) return DEM_OK;
     return demi_fail(h, DEM_ERROR_STOPPED, "dem_world_step: step %llu: %d sweeps left %.3g m/s, "
                      "more than the tolerance; %d of %d contacts are at their friction limit, %s; "

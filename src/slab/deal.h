@@ -443,6 +443,7 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
     int i;
     demi_rows_add(demi_booked_rows, &w->booked, &sums->booked);
+    demi_crushed_add(&w->booked.crushed, &sums->booked.crushed);
     w->bodies.balance.left += sums->left;
     for (i = 0; i < sums->walls; i++) {
         dem_wall_loads part;
@@ -484,6 +485,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     demi_rows_copy(demi_booked_rows, &w->booked, &h->booked, DEMI_HEADS);
     if (s->count == 1) w->margin.skin_auto = from->margin.skin_auto;
     demi_slab_sums_clear(w, DEMI_SUM | DEMI_LARGEST);
+    memset(&w->booked.crushed, 0, sizeof w->booked.crushed);
     for (i = 0; i < w->wall_count; i++) {
         w->walls[i].pose = from->walls[i].pose;
         w->walls[i].servo = from->walls[i].servo;
@@ -660,6 +662,7 @@ DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
         w->booked.overlap_max = 0;
+        memset(&w->booked.crushed, 0, sizeof w->booked.crushed);
         for (i = 0; i < w->wall_count; i++) demi_loads_reset(&w->walls[i].loads);
     }
 }
