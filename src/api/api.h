@@ -125,7 +125,9 @@ DEM_INLINE dem_vec3 dem_quat_unrotate(dem_quat q, dem_vec3 v) {
 /* ---- ids ----
    An id names an object of one world. An all-zero id is the null id: it names nothing. */
 typedef struct dem_material { int32_t id; } dem_material;    /* counts from 1 */
-typedef struct dem_wall { int32_t id; } dem_wall;            /* counts from 1 */
+/* Counts from 1. A wall added after a removal gets an id of a later generation, such as 262145:
+   ids are names, not indices. */
+typedef struct dem_wall { int32_t id; } dem_wall;
 typedef struct dem_field { int32_t id; } dem_field;          /* counts from 1 */
 typedef struct dem_group { int32_t id; } dem_group;          /* counts from 1 in desc.groups */
 typedef struct dem_shape { int32_t id; } dem_shape;          /* counts from 1; 0 means a sphere */
