@@ -70,6 +70,11 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_WARNING,
                       "material %d has a rolling friction of %g: it is a fraction of the "
                       "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
+        if (w->desc.law && (m->rolling_friction > 0 ||
+            w->pairs[i*DEMI_MATERIALS + i].given.spinning_friction > 0))
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling or spinning friction, but "
+                      "desc.law decides whether it acts, and the laws shipped in examples/laws "
+                      "ignore it: call dem_law_roll_epsd or dem_law_twist in your law", i + 1);
         if (m->rolling_friction > 0 && !(m->friction > 0))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
                       "friction: its grains slide instead of rolling", i + 1);

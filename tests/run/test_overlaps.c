@@ -158,5 +158,33 @@ int main(int argc, char **argv) {
         for (k = 0; k < n && k < 8; k++) CHECK(!strstr(f[k].text, "modulus"));
         dem_world_destroy(w);
     }
+    TEST("dem_world_check says that a user-defined law decides about rolling and spinning friction") {
+        int law, of;
+        for (law = 0; law < 2; law++)
+            for (of = 0; of < 3; of++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_material_desc stuff = DEM_MATERIAL_DESC;
+                dem_pair pair;
+                dem_finding f[8];
+                dem_material m;
+                dem_world *w;
+                int k, n, found = 0;
+                if (law) { desc.law = dem_law_hertz; desc.law_memory = 0; }
+                stuff.density = 2500; stuff.young = DEM_R(1e8); stuff.restitution = DEM_R(0.5); stuff.friction = DEM_R(0.5);
+                if (of == 1) stuff.rolling_friction = DEM_R(0.1);
+                w = dem_world_create(&desc);
+                m = dem_material_add(w, &stuff);
+                if (of == 2) {
+                    CHECK_EQ(dem_pair_get(w, m, m, &pair), DEM_OK);
+                    pair.spinning_friction = DEM_R(0.1);
+                    CHECK_EQ(dem_pair_set(w, m, m, &pair), DEM_OK);
+                }
+                dem_sphere_add(w, m, DEM_R(2e-3), at(0, 0, 0));
+                n = dem_world_check(w, f, 8);
+                for (k = 0; k < n && k < 8; k++) found += strstr(f[k].text, "desc.law decides") != 0;
+                CHECK_EQ(found, law && of);
+                dem_world_destroy(w);
+            }
+    }
     return test_end();
 }
