@@ -1,4 +1,4 @@
-# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [peers_two] [blocks] [responses] [ellipsoids]
+# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [peers_two] [blocks] [ellipsoids]
 #                   [instructions] [lessons] [heap] [files]
 # Measures again and replaces tables and pictures in docs/ (without arguments: effects, accuracy, roofline, clusters).
 #   effects     what effects cost, in accuracy.md and README.md
@@ -6,7 +6,6 @@
 #   peers       the table of README.md and the one in peers.md
 #   peers_two   two cores beside other codes, in peers.md
 #   blocks      beds of blocks beside other codes, in shapes.md
-#   responses   springs beside impulses, in impulses.md
 #   ellipsoids  Table 2 in ellipsoids.md, and the theory in docs/data
 #   instructions  instructions of each part of dem.h, in roofline.md; needs no quiet machine
 #   lessons     what the twelve lessons print, in teaching.md
@@ -206,12 +205,6 @@ for what in "$@"; do
         else echo "SKIP: rsvg-convert not found (Debian package librsvg2-bin): pictures stay as they were"; fi
         build/bench --brief && build/bench_single --brief && build/bench_O2 --brief || exit 1
         rates > build/rates.md && splice accuracy.md precision build/rates.md ;;
-    responses)
-        build/responses || exit 1
-        measured "make bench-pages PAGES=responses" >> $at/responses/page.md
-        for s in pile silo hopper drum; do picture $at/responses/$s.svg responses_$s.png $at/responses/page.md; done
-        splice impulses.md responses $at/responses/page.md || exit 1
-        data responses "make bench-pages PAGES=responses" $at/responses/responses.csv ;;
     roofline)
         build/roofline || exit 1
         splice roofline.md roofline_counts $at/roofline/counts.md || exit 1
@@ -283,6 +276,6 @@ for what in "$@"; do
         grep -q ' = ' build/blocks.out || { echo "neither code was found: shapes.md stays as it was"; exit 1; }
         { blocks build/blocks.out; measured "ROUNDS=${ROUNDS:-5} make bench-pages PAGES=blocks"; } > build/blocks.md
         splice shapes.md blocks build/blocks.md "${ROUNDS:+ROUNDS=$ROUNDS }make bench-pages PAGES=blocks" || exit 1 ;;
-    *) echo "no page $what: effects, accuracy, roofline, instructions, clusters, shapes, screener, responses, ellipsoids, peers, peers_two, blocks, lessons, heap or files"; exit 1 ;;
+    *) echo "no page $what: effects, accuracy, roofline, instructions, clusters, shapes, screener, ellipsoids, peers, peers_two, blocks, lessons, heap or files"; exit 1 ;;
     esac
 done
