@@ -399,8 +399,8 @@ static inline int exam_is_asked(const exam *e, char *found) {
         exam_ask(&p, &to, 0, 0);
         for (i = 0; i < e->memory; i++)
             if (p.memory[i] < was.memory[i] || p.memory[i] > was.memory[i]) {
-                EXAM_SAY("real %d of the memory goes from %g to %g when dt is 0: then the law is only asked, not run; "
-                         "write memory where c->dt > 0 alone", i, (double)was.memory[i], (double)p.memory[i]);
+                EXAM_SAY("real %d of the memory goes from %g to %g when dt is 0: with dt = 0 dem.h only asks for the "
+                         "force: change memory only if c->dt > 0", i, (double)was.memory[i], (double)p.memory[i]);
                 return 0;
             }
         for (i = 0; i < EXAM_CANARY; i++)

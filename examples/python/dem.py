@@ -1436,7 +1436,7 @@ class Wall(Id):
         speed: rad/s, of rotating walls
         amplitude: m, Hz, rad: of oscillating walls
         start: s. Until then rotating, translating and servo walls are at rest. A time in the past means now.
-        function: What DEM_MOTION_USER calls. It must not turn a mesh or profile that is as long as a period, because
+        function: The function of DEM_MOTION_USER. It must not rotate a mesh or profile that spans a period, because
             the ends stay joined to those of its images: use a table.
         user: passed to function
         ramp: s, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as 3 u^2 - 2
@@ -2186,7 +2186,7 @@ class Pair(Struct):
     __slots__ = ()
     c_name = 'dem_pair'
     rows = [
-        ('young_eff', Real, "Pa, E*, > 0; where a material's young may be 0, it may, too"),
+        ('young_eff', Real, 'Pa, E*, > 0; may be 0 where `young` may'),
         ('shear_eff', Real, 'Pa, G*'),
         ('restitution', Real, '> 0 and <= 1: e; may be 0 with impulses'),
         ('friction', Real, 'sliding friction mu, >= 0'),
@@ -2477,7 +2477,7 @@ def _wrap_dem_motion_fn(function, context, struct):
 
 
 MotionFn = Function(_wrap_dem_motion_fn, None, ctypes.c_double, ctypes.POINTER(Pose), ctypes.c_void_p)
-MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step, for its end and its middle (with impulses for its end, and for the middle and the end of the next step), from one thread. dem_world_check calls it too, also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE.'
+MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step, for its end and its middle, from one thread. With impulses dem.h also calls it for the next step: it must be valid one step ahead. dem_world_check calls it too, also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE.'
 
 
 @_struct
@@ -2502,7 +2502,7 @@ class Motion(Struct):
         ('start', ctypes.c_double,
          's. Until then rotating, translating and servo walls are at rest. A time in the past means now.'),
         ('function', MotionFn,
-         'What DEM_MOTION_USER calls. It must not turn a mesh or profile that is as long as a period, because '
+         'The function of DEM_MOTION_USER. It must not rotate a mesh or profile that spans a period, because '
          'the ends stay joined to those of its images: use a table.'),
         ('user', ctypes.c_void_p, 'passed to function'),
         ('ramp', ctypes.c_double,
@@ -3914,8 +3914,8 @@ class World(WorldBase):
     @property
     def desc(self):
         """Returns the desc as given, with the present gravity, domain and dt, the search and integrator in use, and
-        thickness and threads where they were 0. skin is the present one: 0 before the first list, and where desc.skin
-        is below 0. Other zeros stay 0, such as laws, sweeps and tolerance.
+        thickness and threads where they were 0. skin: present value; 0 before the first list or if desc.skin < 0.
+        Other zeros stay 0, such as laws, sweeps and tolerance.
         """
         found = _lib.dem_world_desc_get(self._at)
         self._ok(0)
@@ -3960,7 +3960,7 @@ class World(WorldBase):
         """Replaces the contact properties of two materials, in both orders. Start from dem_pair_get.
 
         Fields that are not given stay as they are.
-        young_eff: Pa, E*, > 0; where a material's young may be 0, it may, too
+        young_eff: Pa, E*, > 0; may be 0 where `young` may
         shear_eff: Pa, G*
         restitution: > 0 and <= 1: e; may be 0 with impulses
         friction: sliding friction mu, >= 0

@@ -827,8 +827,9 @@ typedef dem_real (*dem_growth_fn)(const dem_body_state *body, dem_body id, doubl
 
 /* A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
-   derivatives of position and rotation. It is called twice per step, for its end and its middle
-   (with impulses for its end, and for the middle and the end of the next step), from one thread.
+   derivatives of position and rotation. It is called twice per step, for its end and its middle,
+   from one thread. With impulses dem.h also calls it for the next step: it must be valid one step
+   ahead.
    dem_world_check calls it too, also for later times, and reports a velocity or spin that is not
    the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s,
    rad/s) stops the run with DEM_ERROR_UNSTABLE. */

@@ -43,7 +43,7 @@ typedef struct dem_motion {
     /* s. Until then rotating, translating and servo walls are at rest. A time in the past means
        now. */
     double start;
-    /* What DEM_MOTION_USER calls. It must not turn a mesh or profile that is as long as a period,
+    /* The function of DEM_MOTION_USER. It must not rotate a mesh or profile that spans a period,
        because the ends stay joined to those of its images: use a table. */
     dem_motion_fn function;
     void *user;                    /* passed to function */

@@ -136,8 +136,8 @@
 
    Sliding and rolling friction are 0 unless you set them. rolling_friction is mu_r in the largest
    moment, mu_r R* Fn. The effective radius R* is R/2 between two equal spheres and R at a wall:
-   between spheres, double a value that comes from a code with the limit mu_r R Fn. LIGGGHTS's model
-   epsd uses R*, as dem.h does: keep its values.
+   if your code limits the moment to mu_r R Fn, enter 2 mu_r here for sphere on sphere. LIGGGHTS's
+   model epsd uses R*, as dem.h does: keep its values.
 
    --- 5. Choosing a contact law ---
 
@@ -173,10 +173,10 @@
        }
        desc.law = sticky; desc.law_memory = 3; desc.law_vectors = 1;
 
-   law_memory is the number of reals of contact history, law_vectors how many vectors they begin
-   with. Other fields are law_rows (the same law for many contacts at once, which is faster:
-   >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt;
-   0: that of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in
+   law_memory is the number of reals of contact history; law_vectors: how many leading triples of
+   them are vectors. Other fields are law_rows (the same law for many contacts at once, which is
+   faster: >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt; 0: that
+   of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in
    c->who: ids, radii, masses, user-defined numbers) and law_rate, a function that returns how
    fast the law changes such numbers, so that dem.h can limit dt. Laws see the velocity at the
    time of the positions. The Verlet schemes and leapfrog predict it from the half-step velocity
@@ -331,8 +331,8 @@
    An id (dem_body, dem_wall, ...) stays valid until its object is removed. Ids are never reused: a
    new body in the same slot has another generation. All-zero ids name nothing. Indices into the
    arrays of dem_bodies_get change whenever bodies are sorted; ids do not. All memory comes from
-   desc.allocator. After its first steps a run allocates nothing, unless more grains come together
-   than before.
+   desc.allocator. After its first steps a run allocates memory only when there are more neighbour
+   pairs than ever before.
 
    A function that can fail returns a dem_result, a null id or a null pointer, and stores one
    message:
@@ -340,11 +340,11 @@
        if (dem_world_run(world, 1, 0, 0) != DEM_OK) puts(dem_world_error_get(world));
 
    A message names the function, the value, the limit, the likely cause and the remedy. After a
-   failed call the world is as it was before. If a call that builds the scene fails and nothing
-   reads its message, the next run refuses to start and repeats it. Null worlds, descs and result
-   pointers are errors, not crashes. A run that goes wrong (a force that is not finite, an overlap
-   larger than a radius) stops at that step and says why. dem.h never exits or aborts, and it prints
-   only where you call a function that prints.
+   failed call the world is as it was before. If a call that builds the scene fails and the program
+   does not read the message, the next run fails too, with the same message. Null worlds, descs and
+   result pointers are errors, not crashes. A run that goes wrong (a force that is not finite, an
+   overlap larger than a radius) stops at that step and says why. dem.h never exits or aborts, and
+   it prints only where you call a function that prints.
 
    Laws, force fields, motions, regions, progress functions and observers may call every function
    that takes the world as const; within a step dem_bodies_select and dem_bodies_means_get fail.
@@ -362,11 +362,11 @@
    any other transport: docs/parallel.md.
 
    Different worlds may be used from different threads at the same time. Several threads may also
-   read one world by functions that take it as const, while none changes it. Exceptions, which write
-   to the world or allocate, are calls that fail, dem_world_error_get, dem_progress_print,
-   dem_world_report, dem_contacts_get, dem_stress_get, dem_mixing_get, dem_bodies_select,
-   dem_bodies_means_get, dem_repose_heap_get, dem_repose_drum_get, and in a periodic world
-   dem_bodies_get, which wraps positions into the box.
+   read one world by functions that take it as const, while none changes it. These calls take const
+   but are not safe on several threads, because they write to the world or allocate: calls that
+   fail, dem_world_error_get, dem_progress_print, dem_world_report, dem_contacts_get,
+   dem_stress_get, dem_mixing_get, dem_bodies_select, dem_bodies_means_get, dem_repose_heap_get,
+   dem_repose_drum_get, and in a periodic world dem_bodies_get, which wraps positions into the box.
 
    --- 14. Compile-time options, extensions ---
 

@@ -174,8 +174,8 @@ DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
 /* Returns the desc as given, with the present gravity, domain and dt, the search and integrator in
-   use, and thickness and threads where they were 0. skin is the present one: 0 before the first
-   list, and where desc.skin is below 0. Other zeros stay 0, such as laws, sweeps and tolerance. */
+   use, and thickness and threads where they were 0. skin: present value; 0 before the first
+   list or if desc.skin < 0. Other zeros stay 0, such as laws, sweeps and tolerance. */
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
 /* ---- materials ---- */
@@ -230,7 +230,7 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
      the given one if E* is unknown because a material has no young;
    - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu. */
 typedef struct dem_pair {
-    dem_real young_eff;            /* Pa, E*, > 0; where a material's young may be 0, it may, too */
+    dem_real young_eff;            /* Pa, E*, > 0; may be 0 where `young` may */
     dem_real shear_eff;            /* Pa, G* */
     dem_real restitution;          /* > 0 and <= 1: e; may be 0 with impulses */
     dem_real friction;             /* sliding friction mu, >= 0 */

@@ -155,9 +155,9 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
         fprintf(out, "\n");
     }
     if (w->levels.tests[0] > 0)
-        fprintf(out, "           %s: about %.3g tests per body and search with levels, %.3g with "
-                "one grid\n", auto_ ? "chosen" : "levels or one grid", w->levels.tests[1],
-                w->levels.tests[0]);
+        fprintf(out, "           %s: %s; distance tests per body and search, estimated: %.3g with "
+                "levels, %.3g with one grid\n", auto_ ? "chosen" : "set",
+                demi_searches[w->desc.search].name, w->levels.tests[1], w->levels.tests[0]);
 }
 
 /* Returns the number of persistent contacts. */
