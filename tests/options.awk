@@ -166,6 +166,7 @@ function desc(d,   k, j, m, one, text, known, units, not_scene, only_scene, used
         base = type[k]; sub(/[[ ].*/, "", base)
         if (lines && row_name[lines] != "" && ((base == "void" && text ~ /^passed to/) || (text == "" && !is_enum[base] && shared))) {
             row_name[lines] = row_name[lines] "," names[k]
+            if (index(row[lines], "`" type[k] "`") == 0) sub(/` \|/, "`, `" type[k] "` |", row[lines])
             continue
         }
         shared = after[k] == "" && before[k] != "" && before[k] !~ /^--/

@@ -101,7 +101,7 @@ if (browser) {
   for (const told of said ?? []) {
     check(told.digest === native(told.words), `${told.words.join(' ')}: ${told.digest}, in the browser and native`);
     check(!told.error && told.frames > 20 && told.many > 0 && told.seen === told.many && !told.corner,
-      `${told.words[0]}: ${told.seen} of ${told.many} grains seen; ${told.perSecond.toFixed(0)} pictures a second, ` +
+      `${told.words[0]}: ${told.seen} of ${told.many} grains seen; ${told.perSecond.toFixed(0)} frames per second, ` +
       `${told.ms.toFixed(1)} ms each with ${told.steps} steps${told.error}`);
   }
   for (const scene of pictures ? [0, 1, 2] : [])

@@ -303,9 +303,13 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     }
     for (i = 0; i < w->outlet_count; i++) {
         const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
-        fprintf(out, "outlet %-3d %llu grains, %.6g kg%s, of them wanted %llu, %.6g kg\n", i + 1,
-                (unsigned long long)o->total, o->total_mass, demi_outlet_at(w, i)->zone < 0 ? ""
-                : " came in and stayed", (unsigned long long)o->sorted, o->sorted_mass);
+        const dem_outlet_desc *of = &demi_outlet_at(w, i)->desc;
+        fprintf(out, "outlet %-3d %llu grains, %.6g kg%s", i + 1, (unsigned long long)o->total,
+                o->total_mass, demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed");
+        if (of->wanted_min > 0 || of->wanted_max > 0)
+            fprintf(out, ", of them wanted %llu, %.6g kg", (unsigned long long)o->sorted,
+                    o->sorted_mass);
+        fputc('\n', out);
     }
 }
 /* Prints the account of energy. A large residual means that the time step is too large. */
