@@ -62,7 +62,7 @@ typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are vali
 } demi_margin;
 typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int tangent, rolling;          /* laws in force */
-    int twisting;                  /* springs, and a pair has spinning friction */
+    int twisting;                  /* a pair has spinning friction, and no user-defined law */
     int uniform;                   /* one radius, one mass, one material, no fixed body */
     int fixed_count;
     int unlike;                    /* number of bodies that pairs do not see as lone spheres */

@@ -70,13 +70,8 @@ enum { DEMI_COLOURS = 64, DEMI_SWEEP_RUN = 256 };
 
 /* True if some pair of materials has rolling or spinning friction. */
 static int demi_impulses_twist(const dem_world *w) {
-    int i, j, twist = 0;
-    for (i = 0; i < w->material_count; i++)
-        for (j = i; j < w->material_count; j++) {
-            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
-            twist |= !p->ignored && (p->rolling_friction > 0 || p->spinning_friction > 0);
-        }
-    return twist;
+    const demi_rubbing rub = demi_pairs_rub(w);
+    return rub.rolling || rub.twisting;
 }
 /* Returns I^-1 x in the world frame; t: xx yy zz xy xz yz of I^-1. */
 DEM_INLINE dem_vec3 demi_tensor_times(const dem_real *t, dem_vec3 x) {

@@ -104,12 +104,15 @@ static const demi_law_row demi_tangent_laws[] = {{DEM_TANGENT_AUTO, 0, 0, 0, 0, 
 static const demi_law_row demi_rolling_laws[] = {{DEM_ROLLING_AUTO, 0, 0, 0, 0, "auto", 0},
     {DEM_ROLLING_NONE, 0, 0, 0, 0, "none", 0}, DEMI_ROLLING_LAWS(DEMI_LAW_ROW)
     {-1, 0, 0, 0, 0, 0, 0}};
-/* Returns the law of the desc, with AUTO replaced by the law that it means if a pair needs one. */
+/* Returns the law of the desc, with AUTO replaced by the law that it means if a pair needs one.
+   Impulses have no laws: with them it is AUTO, so that a coefficient alone decides. */
 static int demi_tangent_meant(const dem_world *w) {
-    return w->desc.tangent_law == DEM_TANGENT_AUTO ? DEM_TANGENT_SPRING : (int)w->desc.tangent_law;
+    return w->desc.tangent_law == DEM_TANGENT_AUTO || !demi_response_is(w, DEMI_LAWS)
+        ? DEM_TANGENT_SPRING : (int)w->desc.tangent_law;
 }
 static int demi_rolling_meant(const dem_world *w) {
-    return w->desc.rolling_law == DEM_ROLLING_AUTO ? DEM_ROLLING_EPSD : (int)w->desc.rolling_law;
+    return w->desc.rolling_law == DEM_ROLLING_AUTO || !demi_response_is(w, DEMI_LAWS)
+        ? DEM_ROLLING_EPSD : (int)w->desc.rolling_law;
 }
 /* True if the normal law of the desc has this trait. */
 DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {

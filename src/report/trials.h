@@ -62,9 +62,8 @@ static int demi_try_normal(const dem_world *w) {
 /* Returns the tangential law to try instead of the one in force, or -1 if none fits or no pair has
    friction. A spring replaces any other law; with Hertz's law, [THO13] replaces a spring. */
 static int demi_try_tangent(const dem_world *w) {
-    int friction, rolling, sticks;
-    demi_pairs_rub(w, &friction, &rolling, &sticks);
-    if (w->desc.law || !friction || demi_tangent_meant(w) == DEM_TANGENT_NONE) return -1;
+    if (w->desc.law || !demi_pairs_rub(w).friction ||
+        demi_tangent_meant(w) == DEM_TANGENT_NONE) return -1;
     if (demi_tangent_meant(w) != DEM_TANGENT_SPRING) return DEM_TANGENT_SPRING;
     return demi_normal_is(w, DEMI_HERTZIAN) ? DEM_TANGENT_MINDLIN_RESCALED : -1;
 }

@@ -141,20 +141,22 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
 static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real *memory,
                                  size_t stride, int flip, int *any) {
     const demi_laws *laws = &w->laws;
-    int i, friction = 1, rolling = 1, sticks = 1;
+    demi_rubbing rub = {1, 1, 1, 1};
+    int i;
     *any = 0;
-    if (w->memory_stride) demi_pairs_rub(w, &friction, &rolling, &sticks);
+    if (w->memory_stride) rub = demi_pairs_rub(w);
     for (i = 0; i < demi_memory_told(w); i++) {
         dem_real m = memory[(size_t)i*stride];
         int number = i;
         if (demi_response_is(w, DEMI_LAWS) && i == laws->at_sliding) {
-            if (!sticks) continue;
+            if (!rub.sticks) continue;
             number = 24;
         } else if (demi_laws_keep(w) && i == laws->at_twisting) {
-            if (!demi_pairs_twist(w)) continue;
+            if (!rub.twisting) continue;
             number = 25;
         } else if (demi_laws_keep(w)) {
-            if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
+            if (i < laws->at_rolling ? !rub.friction : i < laws->at_normal && !rub.rolling)
+                continue;
             if (i >= laws->at_normal) number = 16 + i - laws->at_normal;
             else if (i >= laws->at_rolling) number = 8 + i - laws->at_rolling;
         }

@@ -26,26 +26,23 @@ static void demi_effects_memory(dem_world *w) {
     w->memory_stride = response->memory ? response->memory : w->laws.memory;
     w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
-/* Sets the three to 1 if any pair of materials that is not ignored has friction, rolling friction,
-   or static friction above its sliding friction. */
-static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int *sticks) {
+/* What rubs in some pair of materials that is not ignored: 1 for friction, for rolling friction,
+   for static friction above the sliding friction, and for spinning friction, which a user-defined
+   law does not have. */
+typedef struct demi_rubbing { int friction, rolling, sticks, twisting; } demi_rubbing;
+static demi_rubbing demi_pairs_rub(const dem_world *w) {
+    demi_rubbing rub = {0, 0, 0, 0};
     int i, j;
-    *friction = *rolling = *sticks = 0;
     for (i = 0; i < w->material_count; i++)
         for (j = 0; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
             if (p->ignored) continue;
-            *friction |= p->friction > 0 || p->friction_static > 0;
-            *rolling |= p->rolling_friction > 0;
-            *sticks |= p->friction_static > p->friction;
+            rub.friction |= p->friction > 0 || p->friction_static > 0;
+            rub.rolling |= p->rolling_friction > 0;
+            rub.sticks |= p->friction_static > p->friction;
+            rub.twisting |= p->spinning_friction > 0 && !w->desc.law;
         }
-}
-/* True with the built-in laws for springs if any pair of materials has spinning friction. */
-static int demi_pairs_twist(const dem_world *w) {
-    int i, twist = 0;
-    for (i = 0; i < w->material_count*DEMI_MATERIALS; i++)
-        twist |= i%DEMI_MATERIALS < w->material_count && w->pairs[i].given.spinning_friction > 0;
-    return twist && !w->desc.law && demi_response_is(w, DEMI_LAWS);
+    return rub;
 }
 /* Returns the largest gap, m, at which a law is called, if the largest radius is `radius`. With
    impulses contacts are found ahead of time: three steps of the fastest body, at most one radius,
@@ -83,16 +80,16 @@ static double demi_fastest(const dem_world *w) {
 }
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
-    int i, friction, rolling, sticks;
-    demi_pairs_rub(w, &friction, &rolling, &sticks);
-    w->effects.sticks = sticks;
-    w->effects.twisting = demi_pairs_twist(w);
+    const demi_rubbing rub = demi_pairs_rub(w);
+    int i;
+    w->effects.sticks = rub.sticks;
+    w->effects.twisting = rub.twisting;
     for (i = w->effects.ignoring = 0; i < w->material_count; i++)
         w->effects.ignoring |= demi_ignorers(w, i) != 0;
     w->normal = (int)w->desc.normal_law;
     w->effects.clustered = demi_clustered(w);
-    w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
-    w->effects.rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
+    w->effects.tangent = rub.friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
+    w->effects.rolling = rub.rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
     demi_effects_memory(w);
     w->effects.uniform = w->bodies.count > 0;
     w->effects.fixed_count = 0;
