@@ -15,7 +15,8 @@ typedef enum dem_motion_kind {
     DEM_MOTION_FIXED = 0,          /* at rest */
     DEM_MOTION_TRANSLATING,        /* with `velocity` */
     DEM_MOTION_ROTATING,           /* at `speed` about `axis` through `point`, right-handed */
-    /* displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start */
+    /* displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start.
+       If sin(phase) is not 0, only with a ramp or before the first step: the wall would jump */
     DEM_MOTION_OSCILLATING,
     DEM_MOTION_USER,               /* as `function` says */
     DEM_MOTION_TABLE,              /* through the poses of `table`, smoothly */

@@ -321,7 +321,7 @@ static void demi_ledger_report(const dem_world *w, FILE *out) {
             l.gravity, l.walls, l.force, l.inserted, l.removed, l.kinetic, l.rotational, l.elastic,
             l.normal, l.slide, l.tangent, l.rolling);
     if (l.growth < 0 || l.growth > 0)
-        fprintf(out, "           in by bodies that change their radius: %.6g\n", l.growth);
+        fprintf(out, "           in by growing radii and changes of the scene: %.6g\n", l.growth);
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0))
         fprintf(out, "           unknown to the ledger: %.3g J of your law, which does not set "
                 "force->energy\n", l.unknown);

@@ -11,15 +11,14 @@
    a user-defined motion: its present speed. A table is sampled eight times per row. */
 static double demi_pose_speed(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
-    const double far = (double)DEMI_MAX(wall->extent, wall->radius);
-    dem_vec3 spin;
+    dem_pose p = wall->pose;
     switch (m->kind) {
     case DEM_MOTION_FIXED: return 0;
     case DEM_MOTION_TRANSLATING: case DEM_MOTION_SERVO: return (double)demi_length(m->velocity);
     case DEM_MOTION_ROTATING:
-        spin = demi_scale(demi_unit(m->axis), m->speed);
-        return (double)demi_length(demi_cross(spin, demi_sub(wall->pose.position, m->point))) +
-               (double)demi_length(spin)*far;
+        p.spin = demi_scale(demi_unit(m->axis), m->speed);
+        p.velocity = demi_cross(p.spin, demi_sub(p.position, m->point));
+        return demi_pose_pace(wall, &p);
     case DEM_MOTION_OSCILLATING:
         return (2*DEMI_PI*fabs((double)m->frequency) + (m->ramp > 0 ? 1.5/m->ramp : 0))*
                fabs((double)m->amplitude);
@@ -27,18 +26,16 @@ static double demi_pose_speed(const demi_wall *wall) {
         const double end = m->table[m->table_count - 1].time;
         const int looks = 8*m->table_count;
         double most = 0;
-        dem_pose p;
         int k;
         for (k = 0; k <= looks; k++) {
             demi_wall_pose_at(wall, m->start + end*k/looks, &p);
-            most = DEMI_MAX(most, (double)demi_length(p.velocity) +
-                            (double)demi_length(p.spin)*far);
+            most = DEMI_MAX(most, demi_pose_pace(wall, &p));
         }
         return most;
     }
     default: break;
     }
-    return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
+    return demi_pose_pace(wall, &p);
 }
 /* Returns the largest speed of a wall's surface during its motion, m/s. */
 static double demi_motion_speed(const demi_wall *wall) {

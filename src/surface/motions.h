@@ -194,8 +194,9 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     case DEM_MOTION_OSCILLATING: {
         const dem_vec3 way = demi_unit(m->velocity);
         const double w = 2*DEMI_PI*(double)m->frequency, phase = w*t + (double)m->phase;
-        const double u = m->ramp > 0 && t < m->ramp ? DEMI_MAX(t, 0)/m->ramp : 1;
+        const double u = m->ramp > 0 && t < m->ramp ? t/m->ramp : 1;
         const double grows = u < 1 ? 6*u*(1 - u)/m->ramp : 0;
+        if (t < 0) break;
         part = u*u*(3 - 2*u);
         pose->position = demi_add(pose->position, demi_scale(way, (dem_real)(
             part*(double)m->amplitude*demi_sin(phase))));
@@ -243,12 +244,28 @@ static const demi_field_row demi_servo_rows[] = {
     DEMI_SERVED(travel, DEMI_ANY), DEMI_SERVED(stiffness, DEMI_ANY),
     DEMI_SERVED(damping, DEMI_ANY), DEMI_SERVED(time, DEMI_ANY), DEMI_ROW_END};
 
+/* Upper bound of the speed, m/s, of all points of a wall in a pose. For vertices two bounds hold,
+   and the lower one counts: the speed of the frame's origin plus spin times the extent, and the
+   largest speed of a corner of their box, since the speed is a convex function of the point. */
+static double demi_pose_pace(const demi_wall *wall, const dem_pose *p) {
+    const double far = (double)DEMI_MAX(wall->extent, wall->radius);
+    const double pace = (double)demi_length(p->velocity) + (double)demi_length(p->spin)*far;
+    double corner = 0;
+    int i;
+    for (i = 0; i < 8 && wall->vertex_count; i++) {
+        const dem_vec3 x = demi_v(i & 1 ? wall->box.hi.x : wall->box.lo.x,
+                                  i & 2 ? wall->box.hi.y : wall->box.lo.y,
+                                  i & 4 ? wall->box.hi.z : wall->box.lo.z);
+        corner = DEMI_MAX(corner, (double)demi_length(demi_add(p->velocity,
+            demi_cross(p->spin, demi_rotate(p->rotation, x)))));
+    }
+    return wall->vertex_count ? DEMI_MIN(pace, corner) : pace;
+}
 /* Upper bound of the speed of a wall's surface, m/s; 0 if its motion leaves the surface in place;
    -1 if there is no bound. */
 static double demi_wall_speed(const demi_wall *wall) {
     const dem_pose *p = &wall->pose;
     if (wall->kind == DEMI_WALL_NONE || wall->symmetric) return 0;
     if (wall->extent < 0 && demi_length(p->spin) > 0) return -1;   /* infinite: search every step */
-    if (wall->extent < 0) return (double)demi_length(p->velocity);
-    return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->extent;
+    return wall->extent < 0 ? (double)demi_length(p->velocity) : demi_pose_pace(wall, p);
 }

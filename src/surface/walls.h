@@ -681,6 +681,14 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                                                              motion->velocity) > 0))
         return demi_refuse(w, "dem_wall_motion_set", "velocity of oscillating wall %d is zero, but "
                            "gives the direction of its motion; set it", (int)id.id);
+    if (motion->kind == DEM_MOTION_OSCILLATING && !(motion->ramp > 0) &&
+        fabs(demi_sin((double)motion->phase)) > 1e-6 &&
+        (w->clock.steps || motion->start > w->clock.time))
+        return demi_refuse(w, "dem_wall_motion_set", "wall %d would jump by %.3g m (amplitude "
+                           "sin(phase)) as its oscillation begins, must be 0 after the first step: "
+                           "it would throw the grains that it meets; set motion.ramp, or phase 0",
+                           (int)id.id, (double)motion->amplitude*
+                           demi_sin((double)motion->phase));
     if (motion->kind == DEM_MOTION_USER && !motion->function)
         return demi_refuse(w, "dem_wall_motion_set", "wall %d has kind DEM_MOTION_USER and no "
                            "function; set motion.function", (int)id.id);

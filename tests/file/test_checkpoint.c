@@ -865,6 +865,7 @@ int main(int argc, char **argv) {
                 motion.amplitude = DEM_R(1e-5);
                 motion.frequency = 500;
                 motion.phase = i ? 0 : 1;
+                motion.ramp = 1e-4;
                 scene_step(w[i], i ? 5 : 50);  /* the same motion, given at another time */
                 CHECK_EQ(dem_wall_motion_set(w[i], wall, &motion), DEM_OK);
             }
