@@ -183,9 +183,10 @@ readers: build/write_files ## write every file format and open it with VTK and A
 	@$(PYTHON) tests/read_vtk.py build/out/readers
 	@$(PYTHON) tests/read_xyz.py build/out/readers
 
-tags: ## check that dem.h is joined from src/, that its parts agree with its contents, and that parts, functions and lines keep their limits
+tags: ## check that dem.h is joined from src/, that its parts agree with its contents, that parts, functions and lines keep their limits, and that calls of user-defined functions are marked
 	@awk -f src/join.awk src/dem.h | cmp - dem.h
 	@awk -f tests/tags.awk dem.h
+	@awk -f tests/calls.awk dem.h
 	@$(MAKE) --no-print-directory english
 
 english: ## list sentences of pages, public comments, error messages and test names that need a second reading

@@ -48,7 +48,7 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, cons
     demi_tile_own(t, r, same, q, w->desc.law_who, c);
     demi_force_clear(&f);
     demi_recall(t, q, 0, keep, m);
-    w->desc.law(c, m, &f);
+    DEMI_USER(w, "the evaluation of contacts", 1, w->desc.law(c, m, &f))
     demi_keep(t, q, 0, keep, m);
     if (same->at_sliding < DEMI_MEMORY) t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
     demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->alike, 1, 1);
@@ -141,7 +141,7 @@ static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, i
     c.slides = t->memory[same.at_sliding];
     if (same.at_sliding == DEMI_MEMORY) memset(c.slides, 0, sizeof t->memory[0]);   /* of no pair */
     for (e = 0; e < 7; e++) c.energy[e] = r->ledger ? t->part[energies[e]] : 0;
-    demi_own_rows(w)(&c);
+    DEMI_USER(w, "the evaluation of contacts", 1, demi_own_rows(w)(&c))
     demi_answer_choose(r, 1)(t, r, full);
 }
 

@@ -249,26 +249,6 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
                        "not been read: \"%.320s\"; correct that call, or read dem_world_error_get "
                        "and continue without it", why);
 }
-/* Call this before a user-defined function. Calls that change the world fail until demi_called gets
-   the value returned here. `who` names the function in messages; `within`: 1 inside a step. */
-static demi_calling demi_calls(dem_world *w, const char *who, int within) {
-    const demi_calling was = w->look.calling;
-    w->look.calling.who = who;
-    w->look.calling.within = within;
-    return was;
-}
-static void demi_called(dem_world *w, demi_calling was) { w->look.calling = was; }
-/* The same for a function that only reads the world, possibly on several threads. Only a thread
-   that finds no call in progress sets the mark, and only that thread removes it, so the mark cannot
-   be left behind. */
-static demi_calling demi_look_calls(const dem_world *w, const char *who) {
-    const demi_calling was = w->look.calling;
-    if (!was.who) demi_calls((dem_world *)w, who, 1);
-    return was;
-}
-static void demi_look_called(const dem_world *w, demi_calling was) {
-    if (!was.who) demi_called((dem_world *)w, was);
-}
 /* The first line of every public function is one of the next three. They return 1 if the world or
    `pointer` is null, and store an error message if there is a world to hold it. The first is for
    functions that only read: any thread and any user-defined function may call them. */
@@ -311,12 +291,19 @@ static dem_result demi_no_memory(dem_world *w, const char *call) {
                      "or a smaller skin; nothing was changed", call, (double)w->bytes/1e6);
 }
 
-static void *demi_raw_alloc(const dem_allocator *a, size_t size) {
-    return a->alloc_fn ? a->alloc_fn(size, a->user) : malloc(size);
+/* Allocate and free by the user's allocator, which may not change the world; w is null while there
+   is none. */
+static void *demi_raw_alloc(dem_world *w, const dem_allocator *a, size_t size) {
+    void *p;
+    if (!a->alloc_fn) return malloc(size);
+    if (!w) return DEMI_USER_WITHIN(a->alloc_fn(size, a->user));
+    DEMI_USER(w, "the allocation of memory", 1, p = a->alloc_fn(size, a->user))
+    return p;
 }
-static void demi_raw_free(const dem_allocator *a, void *p, size_t size) {
-    if (!p) return;
-    if (a->free_fn) a->free_fn(p, size, a->user); else free(p);
+static void demi_raw_free(dem_world *w, const dem_allocator *a, void *p, size_t size) {
+    if (!p || !a->free_fn) free(p);
+    else if (!w) DEMI_USER_WITHIN(a->free_fn(p, size, a->user));
+    else DEMI_USER(w, "the release of memory", 1, a->free_fn(p, size, a->user))
 }
 /* Header in front of every allocation. The data after it begin on a cache line, so that no row of
    four reals crosses one. The header stores the size, so that freeing and growing need no size
@@ -333,21 +320,6 @@ static demi_block *demi_block_of(void *data) { return (demi_block *)data - 1; }
 static size_t demi_room(const void *data, size_t item) {
     return data ? ((const demi_block *)data - 1)->bytes/item : 0;
 }
-/* Allocate and free by the user's allocator, which may not change the world. */
-static void *demi_block_alloc(dem_world *w, size_t bytes) {
-    const demi_calling was = w->look.calling;
-    void *p;
-    if (w->desc.allocator.alloc_fn) demi_calls(w, "the allocation of memory", 1);
-    p = demi_raw_alloc(&w->desc.allocator, bytes);
-    if (w->desc.allocator.alloc_fn) demi_called(w, was);
-    return p;
-}
-static void demi_block_free(dem_world *w, void *p, size_t bytes) {
-    const demi_calling was = w->look.calling;
-    if (w->desc.allocator.free_fn) demi_calls(w, "the release of memory", 1);
-    demi_raw_free(&w->desc.allocator, p, bytes);
-    if (w->desc.allocator.free_fn) demi_called(w, was);
-}
 /* Allocates `count` items of `size` bytes, set to 0, and links them into a list of the world. With
    DEMI_LOOSE they are in no list and the caller must free them. Returns null if memory runs out,
    the product overflows or is 0. */
@@ -357,7 +329,7 @@ static void *demi_hold(dem_world *w, int chain, size_t count, size_t size) {
     demi_block *block;
     int in;
     if ((size && count > (size_t)-1/2/size) || !bytes) return 0;
-    p = (unsigned char *)demi_block_alloc(w, bytes + 2*DEMI_LINE);
+    p = (unsigned char *)demi_raw_alloc(w, &w->desc.allocator, bytes + 2*DEMI_LINE);
     if (!p) return 0;
     in = 2*DEMI_LINE - (int)((uintptr_t)p%DEMI_LINE);
     memset(p + in, 0, bytes);
@@ -383,7 +355,8 @@ static void demi_free(dem_world *w, void *data) {
     if (block->before) block->before->after = block->after;
     else if (block->chain) w->chains[block->chain] = block->after;
     w->bytes -= block->bytes + 2*DEMI_LINE;
-    demi_block_free(w, (unsigned char *)data - block->in, block->bytes + 2*DEMI_LINE);
+    demi_raw_free(w, &w->desc.allocator, (unsigned char *)data - block->in,
+                  block->bytes + 2*DEMI_LINE);
 }
 /* True if the allocation is in this list of the world. A copy of a world refers to allocations of
    the original, which it must not free. */

@@ -211,8 +211,9 @@ typedef struct demi_output {
 } demi_output;
 
 /* The call that is running a user-defined function; who is null if none. within: 1 while lists and
-   sums are incomplete, 0 where the world is consistent and files may be written. */
-typedef struct demi_calling { const char *who; int within; } demi_calling;
+   sums are incomplete, 0 where the world is consistent and files may be written. set: 1 if
+   demi_calls has changed it, so that demi_called restores it. */
+typedef struct demi_calling { const char *who; int within, set; } demi_calling;
 
 /* How many threads a world uses, see demi_crew_end. Not part of the state. */
 typedef struct demi_crew {
@@ -227,6 +228,8 @@ typedef struct demi_crew {
    outputs: reading a checkpoint does not change them. */
 typedef struct demi_lookers {
     demi_calling calling;          /* see demi_calls */
+    dem_world *of;                 /* the world of the user that holds the mark: the original of a
+                                      copy, the head of slabs; null: this one */
     int tenths_told;               /* progress into a file: last tenth of this run reported */
     int under_way;                 /* > 0: an output runs a user-defined function; steps fail */
     dem_replay *films;             /* open replays, which record frames automatically */
@@ -522,9 +525,36 @@ struct dem_world {
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */
 };
-/* Calls a task for each work group. */
+/* Marks that user-defined functions run: calls that change the world then fail (demi_null) until
+   demi_called gets the value returned here. `who` names the function in messages; within: 1 if
+   files cannot be written either. A mark stays if there is one that forbids as much, so only the
+   thread that sets a mark removes it. */
+DEM_INLINE demi_calling demi_calls(const dem_world *w, const char *who, int within) {
+    demi_calling *now = &((dem_world *)(w->look.of ? w->look.of : w))->look.calling;
+    demi_calling was = *now;
+    was.set = !was.who || within > was.within;
+    if (was.set) { now->who = who; now->within = within; }
+    return was;
+}
+DEM_INLINE void demi_called(const dem_world *w, demi_calling was) {
+    if (was.set) ((dem_world *)(w->look.of ? w->look.of : w))->look.calling = was;
+}
+/* Every call of a user-defined function is in one of these two, as tests/calls.awk checks. The
+   second is for functions that may change the world, but not step or destroy it. */
+#define DEMI_USER(w, who, within, call) { \
+    const demi_calling demi_was = demi_calls(w, who, within); \
+    call; \
+    demi_called(w, demi_was); }
+#define DEMI_USER_FREE(w, call) { (w)->look.under_way++; call; (w)->look.under_way--; }
+/* In a function that stands in for one of the user's, and that DEMI_USER calls. */
+#define DEMI_USER_WITHIN(call) call
+
+/* Calls a task for each work group. Marks this as a call of user-defined functions, because tasks
+   on several threads cannot. */
 static void demi_domains_do(dem_world *w, demi_task task) {
+    const demi_calling was = demi_calls(w, "a step", 1);
     demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
+    demi_called(w, was);
 }
 /* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this
    index. So indices are reused, and the id of a removed wall stays invalid. */

@@ -148,11 +148,8 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
         result = demi_mixing_values(w, &d->mixing, value);
     } else {
         count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
-        if (d->values) {
-            const demi_calling was = demi_calls(w, "an output of values", 0);
-            d->values(w, value, d->user);
-            demi_called(w, was);
-        } else {
+        if (d->values) DEMI_USER(w, "an output of values", 0, d->values(w, value, d->user))
+        else {
             const dem_counters c = dem_counters_get(w);
             const dem_totals t = dem_totals_get(w);
             value[0] = (double)c.steps;
@@ -203,11 +200,11 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     char digits[24], *path;
     dem_result result = DEM_OK;
     if (d->kind == DEM_OUTPUT_CALL) {
-        w->look.under_way++;
-        if (d->function(w, number, d->user))
+        int stop;
+        DEMI_USER_FREE(w, stop = d->function(w, number, d->user))
+        if (stop)
             result = demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: stopped by the function of "
                                "an output at %g s", w->clock.time);
-        w->look.under_way--;
         return result;
     }
     path = (char *)demi_alloc(w, length + sizeof digits, 1);

@@ -42,6 +42,7 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
 static dem_world *demi_twin_make(dem_world *w) {
     dem_world *t = (dem_world *)demi_alloc(w, 1, sizeof *t);
     if (!t) return 0;
+    t->look.of = w->look.of ? w->look.of : w;
     t->desc = w->desc;
     t->asked = w->asked;
     demi_names_own(t, &w->asked);

@@ -348,9 +348,9 @@ static void demi_ahead(dem_world *w) {
         wall->was = wall->ahead;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(wall, w->clock.time + dt/2, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
         if (demi_pose_sane(&pose)) wall->pose = pose;
-        demi_wall_pose_at(wall, w->clock.time + dt, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
         if (demi_pose_sane(&pose)) wall->ahead = pose;
     }
 }

@@ -219,7 +219,7 @@ static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_c
     const int slides = laws->at_sliding < DEMI_MEMORY;
     demi_force_clear(f);
     c->sliding = slides ? memory[laws->at_sliding] : 0;
-    if (w->desc.law) w->desc.law(c, memory, f);
+    if (w->desc.law) DEMI_USER(w, "the evaluation of contacts", 1, w->desc.law(c, memory, f))
     else {
         laws->normal->law(c, memory + laws->at_normal, f);
         if (laws->tangent->law) laws->tangent->law(c, memory, f);

@@ -360,7 +360,8 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     if (r->desc.number_fn) {
         id.slot = (uint32_t)s + 1;
         id.generation = one->generation;
-        own = (float)r->desc.number_fn(r->world, id, r->desc.user);
+        DEMI_USER(r->world, "dem_replay_frame_write", 1,
+                  own = (float)r->desc.number_fn(r->world, id, r->desc.user))
     } else if (r->group >= 0) own = (float)(r->world->bodies.groups[i] >> r->group & 1);
     else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
     if (told != one->speed) flags |= 64;
@@ -449,7 +450,7 @@ static dem_result demi_film_check(dem_replay *r, const char *call) {
 DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
     if (!r || demi_null_write(r->world, __func__, r, "replay")) return DEM_ERROR_ARGUMENT;
     dem_world *w = r->world;
-    const demi_calling was = w->look.calling;
+    demi_calling was;
     double time;
     uint32_t values = 0;
     int s, k;
@@ -461,7 +462,7 @@ DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
         return demi_film_check(r, __func__);
     }
     demi_finish(w);
-    demi_calls(w, __func__, 1);
+    was = demi_calls(w, __func__, 1);
     const dem_bodies b = dem_bodies_get(w);
     if (!(r->resolution > 0)) demi_film_resolve(r, &b);
     for (; r->shape_count < w->shape_count; r->shape_count++)

@@ -195,15 +195,15 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
 /* Compares the velocity and spin that a user-defined motion gives at a time with the differences of
    its poses over d s. Returns 1 and fills the two vectors if they differ by more than 1 % and
    round-off. Of an infinite plane only the velocity along its normal counts. */
-static int demi_motion_differs(const demi_wall *wall, double time, double d, dem_vec3 *given,
-                               dem_vec3 *found) {
+static int demi_motion_differs(const dem_world *w, const demi_wall *wall, double time,
+                               double d, dem_vec3 *given, dem_vec3 *found) {
     const dem_real digit = DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(2e-15), per = (dem_real)(1/d);
     dem_pose p[3];
     dem_vec3 v[2][2];
     dem_real W[9];
     int i, j, k;
     for (k = 0; k < 3; k++) {
-        demi_wall_pose_at(wall, time + k*d/2, &p[k]);
+        demi_wall_pose_at(w, wall, time + k*d/2, &p[k]);
         if (!demi_pose_sane(&p[k])) return 0;
     }
     for (i = 0; i < 3; i++)                     /* dR/dt R^T */
@@ -229,7 +229,6 @@ static int demi_motion_differs(const demi_wall *wall, double time, double d, dem
 }
 /* Checks user-defined motions now and at later times, up to a million steps from now. */
 static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings *f) {
-    const demi_calling was = demi_calls(w, "dem_world_check", 1);
     const double d = w->clock.dt > 0 ? (double)w->clock.dt : w->desc.dt > 0 ? (double)w->desc.dt
         : a->dt_max > 0 ? (double)a->dt_max/2 : 1e-6;
     int i, k, differs;
@@ -239,7 +238,7 @@ static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings 
         dem_vec3 v = {0, 0, 0}, u = {0, 0, 0};
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_USER) continue;
         for (k = differs = 0; k < 8 && !differs; k++, after = after > 0 ? 10*after : d)
-            differs = demi_motion_differs(wall, w->clock.time + after, d, &v, &u);
+            differs = demi_motion_differs(w, wall, w->clock.time + after, d, &v, &u);
         if (!differs) continue;
         demi_find(f, DEM_SEVERITY_WARNING, "the motion of wall %d gives a %s of (%g, %g, %g) where "
                   "its %s changes by (%g, %g, %g) per second: contacts would create energy; give "
@@ -247,7 +246,6 @@ static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings 
                   differs == 1 ? "velocity" : "spin", (double)v.x, (double)v.y, (double)v.z,
                   differs == 1 ? "position" : "rotation", (double)u.x, (double)u.y, (double)u.z);
     }
-    demi_called(w, was);
 }
 
 /* True if the whole of a finite wall is behind some plane or beyond an outflow face of the domain,

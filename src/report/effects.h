@@ -111,11 +111,14 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
         dem_body_state body;
         if (!(w->bodies.inv_mass[i] > 0) || dem_body_get(w, id, &body) != DEM_OK) continue;
         if (w->desc.body_force)
-            w->desc.body_force(&body, id, w->clock.time, &force, &torque, w->desc.force_user);
+            DEMI_USER(w, "a report of effects", 1,
+                      w->desc.body_force(&body, id, w->clock.time, &force, &torque,
+                                         w->desc.force_user))
         if (w->desc.force)
-            force = demi_add(force, w->desc.force(body.position, body.velocity,
-                                                  w->bodies.pos[4*i + 3], w->bodies.mass[i],
-                                                  w->clock.time, w->desc.force_user));
+            DEMI_USER(w, "a report of effects", 1,
+                      force = demi_add(force, w->desc.force(
+                          body.position, body.velocity, w->bodies.pos[4*i + 3],
+                          w->bodies.mass[i], w->clock.time, w->desc.force_user)))
         pushed += demi_dot(force, force) > 0 || demi_dot(torque, torque) > 0;
     }
     return demi_say(e, pushed, "acts on %d of %d bodies now", pushed, w->bodies.count);
@@ -130,7 +133,8 @@ static dem_effect_state demi_look_growth(const dem_world *w, dem_effect *e) {
         dem_body_state body;
         dem_real rate;
         if (dem_body_get(w, id, &body) != DEM_OK) continue;
-        rate = w->desc.growth(&body, id, w->clock.time, w->desc.growth_user);
+        DEMI_USER(w, "a report of effects", 1,
+                  rate = w->desc.growth(&body, id, w->clock.time, w->desc.growth_user))
         moving += rate < 0 || rate > 0;
     }
     return demi_say(e, moving, "the radii of %d of %d bodies change now", moving, w->bodies.count);
@@ -345,17 +349,19 @@ static void demi_law_again(const dem_contact *c, dem_real *memory, dem_contact_f
             twin.who.rate_a = rates;
             twin.who.rate_b = rates + DEM_BODY_REALS;
         }
-        own->desc.law(&twin, spare, &other);
+        DEMI_USER_WITHIN(own->desc.law(&twin, spare, &other));
     }
-    own->desc.law(&mine, memory, f);
+    DEMI_USER_WITHIN(own->desc.law(&mine, memory, f));
 }
 static dem_vec3 demi_force_again(dem_vec3 position, dem_vec3 velocity, dem_real radius,
                                  dem_real mass, double time, void *user) {
     const demi_again *own = (const demi_again *)user;
     int i;
     for (i = 1; i < own->times; i++)
-        own->desc.force(position, velocity, radius, mass, time, own->desc.force_user);
-    return own->desc.force(position, velocity, radius, mass, time, own->desc.force_user);
+        DEMI_USER_WITHIN(own->desc.force(position, velocity, radius, mass, time,
+                                         own->desc.force_user));
+    return DEMI_USER_WITHIN(own->desc.force(position, velocity, radius, mass, time,
+                                            own->desc.force_user));
 }
 static void demi_body_force_again(const dem_body_state *body, dem_body id, double time,
                                   dem_vec3 *force, dem_vec3 *torque, void *user) {
@@ -363,9 +369,9 @@ static void demi_body_force_again(const dem_body_state *body, dem_body id, doubl
     int i;
     for (i = 1; i < own->times; i++) {
         dem_vec3 f = *force, t = *torque;
-        own->desc.body_force(body, id, time, &f, &t, own->desc.force_user);
+        DEMI_USER_WITHIN(own->desc.body_force(body, id, time, &f, &t, own->desc.force_user));
     }
-    own->desc.body_force(body, id, time, force, torque, own->desc.force_user);
+    DEMI_USER_WITHIN(own->desc.body_force(body, id, time, force, torque, own->desc.force_user));
 }
 static void demi_again_law(dem_world *t, demi_again *own) {
     t->desc.law = demi_law_again;

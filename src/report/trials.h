@@ -147,7 +147,8 @@ static dem_result demi_try_run(dem_world *t, const dem_trials *all, double *sum)
         result = dem_world_run(t, all->duration/2/(k ? (int)DEMI_TRY_SAMPLES : 1), 0, 0);
         for (e = 0; e < all->observable_count && k && result == DEM_OK; e++) {
             const dem_observable *o = &all->observables[e];
-            const double value = o->function(t, o->user);
+            double value;
+            DEMI_USER(t, "dem_trials_run", 1, value = o->function(t, o->user))
             sum[e] += value/(int)DEMI_TRY_SAMPLES;
             if (!demi_finite_double(value))
                 result = demi_fail(t, DEM_ERROR_UNSTABLE, "%s is not finite", o->name);
@@ -350,7 +351,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     char *state;
     size_t size;
     dem_result result;
-    int k;
+    int k, stop = 0;
     if (demi_null(w, __func__, d, "desc") || demi_null(w, __func__, out, "trials"))
         return DEM_ERROR_ARGUMENT;
     if (demi_unbuilt(w, __func__) != DEM_OK || demi_trials_check(w, d) != DEM_OK)
@@ -378,9 +379,11 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
         trial->step = rows[k]->step;
         trial->stiffness = rows[k]->stiffness;
         result = demi_trial_run(w, state, size, rows[k], out, trial);
-        if (result == DEM_OK && d->progress &&
-            d->progress(w, (k + 1.0)/out->count,
-                        (demi_clock() - begun)*(out->count - k - 1)/(k + 1), d->user))
+        if (result == DEM_OK && d->progress)
+            DEMI_USER(w, __func__, 1, stop = d->progress(
+                w, (k + 1.0)/out->count, (demi_clock() - begun)*(out->count - k - 1)/(k + 1),
+                d->user))
+        if (result == DEM_OK && stop)
             result = demi_fail(w, DEM_ERROR_STOPPED, "dem_trials_run: stopped by the progress "
                                "function after %d of %d trials", k + 1, out->count);
     }

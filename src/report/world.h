@@ -89,7 +89,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     dem_world *w;
     if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
         *dem_world_create_error_get(desc)) return 0;
-    w = (dem_world *)demi_raw_alloc(&desc->allocator, sizeof *w);
+    w = (dem_world *)demi_raw_alloc(0, &desc->allocator, sizeof *w);
     if (!w) return 0;
     memset(w, 0, sizeof *w);
     w->desc = w->asked = *desc;
@@ -128,9 +128,10 @@ DEM_API void dem_world_destroy(dem_world *w) {
                     "the run, then destroy the world");
         return;
     }
+    demi_calls(w, __func__, 1);                 /* the allocator sees an incomplete world */
     for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
     allocator = w->desc.allocator;
-    demi_raw_free(&allocator, w, sizeof *w);
+    demi_raw_free(0, &allocator, w, sizeof *w);
 }
 
 DEM_API const char *dem_world_error_get(const dem_world *w) {
@@ -396,7 +397,7 @@ static void demi_report(const dem_world *world, FILE *out) {
 DEM_API void dem_world_report(const dem_world *w, FILE *out) {
     demi_calling was;
     if (demi_null_look(w, __func__, out, "out")) return;
-    was = demi_look_calls(w, __func__);
+    was = demi_calls(w, __func__, 1);
     demi_report(w, out);
-    demi_look_called(w, was);
+    demi_called(w, was);
 }

@@ -28,7 +28,7 @@ static double demi_pose_speed(const demi_wall *wall) {
         double most = 0;
         int k;
         for (k = 0; k <= looks; k++) {
-            demi_wall_pose_at(wall, m->start + end*k/looks, &p);
+            demi_wall_pose_at(0, wall, m->start + end*k/looks, &p);
             most = DEMI_MAX(most, demi_pose_pace(wall, &p));
         }
         return most;
@@ -425,7 +425,7 @@ static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_con
     c->who.reals_a = w->bodies.reals + w->bodies.real_count*a;
     c->who.reals_b = b >= 0 ? w->bodies.reals + w->bodies.real_count*b : w->walls[wall].reals;
     c->m_eff = b < 0 ? c->who.mass_a : 1/(1/c->who.mass_a + 1/c->who.mass_b);
-    w->desc.law_rate(c, rates);
+    DEMI_USER(w, "an estimate of the time step", 1, w->desc.law_rate(c, rates))
     press[a].relax += weight*(double)rates[0];
     if (b >= 0) press[b].relax += weight*(double)rates[1];
 }

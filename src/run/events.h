@@ -561,9 +561,7 @@ static dem_result demi_events_tell(dem_world *w, const char *call) {
     if (e->desc.function) demi_all(w, demi_member_finish);  /* it may look at velocities */
     qsort(e->pending, (size_t)e->n.pending, sizeof *e->pending, demi_event_compare);
     for (i = 0; i < e->n.pending && e->desc.function; i++) {
-        const demi_calling was = demi_calls(w, call, 0);
-        e->desc.function(&e->pending[i], e->desc.user);
-        demi_called(w, was);
+        DEMI_USER(w, call, 0, e->desc.function(&e->pending[i], e->desc.user))
     }
     e->n.pending = 0;
     return DEM_OK;
@@ -599,7 +597,6 @@ DEM_API dem_result dem_events_stop(dem_world *w) {
 }
 DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     dem_event *all = 0;
-    demi_calling was;
     int i, n;
     if (demi_null(w, __func__, w, "world") || demi_events_needed(w, __func__) != DEM_OK) return -1;
     n = w->events.n.open;
@@ -608,9 +605,7 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     if (!all) { demi_no_memory(w, __func__); return -1; }
     for (i = 0; i < n; i++) all[i] = demi_event_shown(w, i, DEM_EVENT_OPEN);
     qsort(all, (size_t)n, sizeof *all, demi_event_compare);
-    was = demi_calls(w, __func__, 0);
-    for (i = 0; i < n; i++) fn(&all[i], user);
-    demi_called(w, was);
+    for (i = 0; i < n; i++) DEMI_USER(w, __func__, 0, fn(&all[i], user))
     demi_free(w, all);
     return n;
 }

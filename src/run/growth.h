@@ -68,7 +68,8 @@ static dem_result demi_member_grow(dem_world *w) {
         dem_body_state state;
         dem_real rate;
         if (demi_is_ghost(w, i) || dem_body_get(w, id, &state) != DEM_OK) continue;
-        rate = w->desc.growth(&state, id, w->clock.time, w->desc.growth_user);
+        DEMI_USER(w, "a step", 1,
+                  rate = w->desc.growth(&state, id, w->clock.time, w->desc.growth_user))
         radius[i] = r + (dem_real)((double)rate*passed);
         if (rate < 0 || rate > 0 || !demi_finite(rate)) grown |= rate < 0 ? 3 : 1;
         if (demi_size_bad(w, i, radius[i], &mass))

@@ -80,23 +80,20 @@ static int demi_contacts_visit(dem_world *w, const char *call, dem_contact_fn fn
     demi_walk c = demi_walk_begin();
     dem_real memory[DEMI_MEMORY];
     int e, n = 0, changed = 0;
-    demi_calling was_calling;
     if (demi_contacts_settle(w, call) != DEM_OK) return -1;
-    was_calling = demi_calls(w, call, 0);
     for (; demi_walk_next(w, &c); n++) {
         const int keep = c.own ? DEMI_MEMORY : w->memory_stride;
         const size_t step = c.own ? 1 : (size_t)w->near.stride;
         dem_real *row = c.own ? c.own->memory : !keep ? memory
             : w->near.memory + (size_t)c.d*(size_t)keep*step + c.entry;
         for (e = 0; e < keep; e++) memory[e] = row[(size_t)e*step];
-        fn(&c.info, memory, user);
+        DEMI_USER(w, call, 0, fn(&c.info, memory, user))
         for (e = 0; e < keep; e++) {
             dem_real *now = row + (size_t)e*step;
             changed |= memory[e] < *now || memory[e] > *now;
             *now = memory[e];
         }
     }
-    demi_called(w, was_calling);
     if (changed) demi_scene_changed(w);
     return n;
 }
@@ -110,7 +107,7 @@ typedef struct demi_bonds { dem_contact_fn make; void *user; dem_real gap; int c
 static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
     demi_bonds *b = (demi_bonds *)user;
     if (c->wall || !(c->overlap > -b->gap)) return;
-    b->make(c, memory, b->user);
+    DEMI_USER_WITHIN(b->make(c, memory, b->user));
     b->count++;
 }
 DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void *user) {

@@ -23,14 +23,8 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     demi_tile tile;
     dem_contact c;
     dem_contact_force f;
-    demi_calling was;
     int e;
-    if (w->effects.clustered) {
-        was = demi_look_calls(w, "a read of the contacts");
-        e = demi_members_info(w, d, p, out, gap);
-        demi_look_called(w, was);
-        return e;
-    }
+    if (w->effects.clustered) return demi_members_info(w, d, p, out, gap);
     tile.memory[r.same.at_sliding][0] = 0;      /* demi_law reads it from `memory` */
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
@@ -45,9 +39,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
     demi_who_clear(&c.who);
     demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
-    was = demi_look_calls(w, "a read of the contacts");
     demi_law(w, &c, memory, &f);
-    demi_look_called(w, was);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
     out->normal = demi_row(tile.normal, 0);
     out->overlap = tile.overlap[0];

@@ -10,9 +10,9 @@
 static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn progress,
                                 void *user, double done, double since) {
     const double left = (demi_clock() - since)*(1 - done)/DEMI_MAX(done, 1e-9);
-    const demi_calling was = demi_calls(w, call, 0);
-    const int stop = progress && progress(w, done, done < 1 ? left : 0, user) && done < 1;
-    demi_called(w, was);
+    int stop = 0;
+    if (progress)
+        DEMI_USER(w, call, 0, stop = progress(w, done, done < 1 ? left : 0, user) && done < 1)
     return stop ? demi_fail(w, DEM_ERROR_STOPPED, "%s: stopped by the progress function at %g s",
                             call, w->clock.time) : DEM_OK;
 }

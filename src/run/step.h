@@ -150,7 +150,8 @@ static void demi_domain_fields(dem_world *w, int d) {
         if (demi_is_ghost(w, i) || dem_body_get(w, id, &body) != DEM_OK) continue;
         body.velocity = demi_field_rate(w, w->bodies.vel, w->bodies.half_vel, i);
         body.spin = demi_field_rate(w, w->bodies.spin, w->bodies.half_spin, i);
-        w->desc.body_force(&body, id, demi_field_time(w), &force, &torque, w->desc.force_user);
+        DEMI_USER(w, "a step", 1, w->desc.body_force(&body, id, demi_field_time(w), &force, &torque,
+                                                     w->desc.force_user))
         demi_force_add(w->bodies.force + 4*i, force);
         demi_force_add(w->bodies.torque + 4*i, torque);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
@@ -181,9 +182,10 @@ static void demi_domain_clear(dem_world *w, int d) {
     for (i = domain->begin; i < domain->end && w->desc.force; i++) {
         if (demi_is_ghost(w, i)) continue;
         const dem_vec3 v = demi_field_rate(w, w->bodies.vel, w->bodies.half_vel, i);
-        const dem_vec3 f = w->desc.force(demi_at(w->bodies.pos + 4*i), v, w->bodies.pos[4*i + 3],
-                                         w->bodies.mass[i], demi_field_time(w),
-                                         w->desc.force_user);
+        dem_vec3 f;
+        DEMI_USER(w, "a step", 1, f = w->desc.force(demi_at(w->bodies.pos + 4*i), v,
+                                                    w->bodies.pos[4*i + 3], w->bodies.mass[i],
+                                                    demi_field_time(w), w->desc.force_user))
         demi_put(w->bodies.force + 4*i, f);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, v)*(double)w->clock.dt;
@@ -445,9 +447,9 @@ static dem_result demi_step_move(dem_world *w) {
         dem_pose pose = wall->pose, mid = wall->mid;
         double speed;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(wall, w->clock.time, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time, &pose);
         if (!demi_response_is(w, DEMI_MIDWAY))
-            demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &mid);
+            demi_wall_pose_at(w, wall, w->clock.time - w->clock.half_kick, &mid);
         if (!demi_pose_sane(&pose) || !demi_pose_sane(&mid)) {
             w->stage.forces_valid = 0;          /* the wall stays where it was, finite */
             w->margin.walls_gone = 1e300;
@@ -482,8 +484,9 @@ static void demi_domain_gain(dem_world *w, int d) {
         if (demi_is_ghost(w, i)) continue;
         if (!w->desc.body_reals_fn) for (k = 0; k < n; k++) reals[k] += rates[k]*dt;
         else if (dem_body_get(w, id, &body) == DEM_OK)
-            w->desc.body_reals_fn(reals, rates, &body, id, w->clock.time, dt,
-                                  w->desc.body_reals_user);
+            DEMI_USER(w, "a step", 1,
+                      w->desc.body_reals_fn(reals, rates, &body, id, w->clock.time, dt,
+                                            w->desc.body_reals_user))
     }
 }
 /* Integrates the user-defined numbers of bodies, and what walls have gained of them, over the step.

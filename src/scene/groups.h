@@ -65,7 +65,6 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
                                   int *count) {
     const demi_periods p = demi_periods_of(w);
     unsigned char *marks;
-    demi_calling was;
     demi_region g;
     int i;
     *count = 0;
@@ -87,7 +86,6 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
             w->bodies.slot_index[b.slot - 1] < 0) continue;
         marks[w->bodies.slot_index[b.slot - 1]] = 1;
     }
-    was = demi_calls(w, call, 1);
     for (i = 0; i < w->bodies.count; i++) {
         const dem_real r = w->bodies.pos[4*i + 3];
         marks[i] = marks[i] && demi_in_group(w, s->group, i) &&
@@ -98,7 +96,6 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
                                              r));
         *count += marks[i];
     }
-    demi_called(w, was);
     return marks;
 }
 DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *s, dem_body *out,

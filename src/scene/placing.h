@@ -182,6 +182,7 @@ typedef struct demi_region {
     dem_vec3 lo;                   /* m, lower corner and size of the box of centres */
     double size[3];
     int cylinder;                  /* 1 + axis of the cylinder in it; 0: the whole box */
+    const dem_world *world;
     dem_inside_fn inside;
     void *user;
 } demi_region;
@@ -210,6 +211,7 @@ static int demi_region_make(const dem_world *w, const dem_region *from, double o
     }
     to->lo = demi_at(lo);
     to->cylinder = from->cylinder ? 1 + from->cylinder - 'x' : 0;
+    to->world = w;
     to->inside = from->inside;
     to->user = from->user;
     return ok && demi_finite3(from->box.lo) && demi_finite3(from->box.hi);
@@ -222,7 +224,10 @@ static int demi_region_keeps(const demi_region *g, const double *u, dem_vec3 x, 
     for (k = 0; k < 3; k++)
         if (g->cylinder && g->cylinder != 1 + k && g->size[k] > 0)
             round += (2*u[k] - 1)*(2*u[k] - 1);
-    return round <= 1 && (!g->inside || g->inside(x, radius, g->user));
+    k = round <= 1;
+    if (k && g->inside)
+        DEMI_USER(g->world, "a fill, feed or selection", 1, k = g->inside(x, radius, g->user) != 0)
+    return k;
 }
 /* Sets *x to the position with relative coordinates u. Returns 0 if it is outside the region. */
 static int demi_region_at(const demi_region *g, const double *u, dem_real radius, dem_vec3 *x) {
@@ -426,7 +431,6 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                      uint64_t seed) {
     demi_region g;
     demi_crowd c;
-    demi_calling was;
     int m = 0, first, done;
     if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
     if (radii) radius = radii[0];
@@ -443,9 +447,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (radii) demi_region_make(w, region, (double)radii[DEMI_MAX(count, 1) - 1], &g);
     done = demi_crowd_begin(w, &c, &g, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
-    was = demi_calls(w, call, 1);
     if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
-    demi_called(w, was);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, shape)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
@@ -572,7 +574,6 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     demi_region room;
     demi_crowd c;
     demi_lattice g;
-    demi_calling was;
     int m = 0, first, done;
     if (demi_null(w, __func__, w, "world") ||
         demi_material_index(w, __func__, material, &m) != DEM_OK) return 0;
@@ -598,9 +599,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     }
     done = demi_crowd_begin(w, &c, &room, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
-    was = demi_calls(w, __func__, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);
-    demi_called(w, was);
     c.count += DEMI_MAX(done, 0);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
     demi_crowd_end(w);

@@ -15,7 +15,7 @@ static void *demi_slabs_alloc(size_t size, void *user) {
 #if DEMI_OPENMP
     #pragma omp critical(demi_slabs)
 #endif
-    p = a->alloc_fn(size, a->user);
+    p = DEMI_USER_WITHIN(a->alloc_fn(size, a->user));
     return p;
 }
 static void demi_slabs_free(void *memory, size_t size, void *user) {
@@ -23,7 +23,7 @@ static void demi_slabs_free(void *memory, size_t size, void *user) {
 #if DEMI_OPENMP
     #pragma omp critical(demi_slabs)
 #endif
-    a->free_fn(memory, size, a->user);
+    DEMI_USER_WITHIN(a->free_fn(memory, size, a->user));
 }
 
 /* Copies the walls of a scene. The first slab of a process gets its own geometry. Later slabs share
@@ -115,6 +115,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w = dem_world_create(&desc);
     *ok = 0;
     if (!w) return 0;
+    w->look.of = &s->head;
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
@@ -306,10 +307,11 @@ DEM_API void dem_slabs_destroy(dem_slabs *s) {
     dem_allocator allocator;
     int k;
     if (!s || demi_null(&s->head, __func__, s, "slabs")) return;
+    demi_calls(&s->head, __func__, 1);          /* the allocator sees incomplete slabs */
     for (k = 0; k < s->local && s->slabs; k++) dem_world_destroy(s->slabs[k].world);
     allocator = s->head.desc.allocator;
     demi_free_chain(&s->head, DEMI_RUN);
-    demi_raw_free(&allocator, s, sizeof *s);
+    demi_raw_free(0, &allocator, s, sizeof *s);
 }
 /* dem_slabs_create without the check for null. Returns null after an error. */
 static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
@@ -324,7 +326,7 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
     }
-    s = (dem_slabs *)demi_raw_alloc(&w->desc.allocator, sizeof *s);
+    s = (dem_slabs *)demi_raw_alloc(w, &w->desc.allocator, sizeof *s);
     if (!s) { demi_no_memory(w, "dem_slabs_create"); return 0; }
     memset(s, 0, sizeof *s);
     s->head.desc = w->desc;

@@ -44,7 +44,8 @@ static dem_result demi_slabs_transport_failed(dem_slabs *s, const char *what, in
 static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int sum) {
     int answer;
     if (s->local == s->count) return DEM_OK;
-    answer = s->desc.transport.reduce_fn(values, count, sum, s->desc.transport.user);
+    DEMI_USER(&s->head, "dem_slabs_step", 1, answer = s->desc.transport.reduce_fn(
+        values, count, sum, s->desc.transport.user))
     return answer ? demi_slabs_transport_failed(s, "reduce_fn", answer) : DEM_OK;
 }
 
@@ -128,7 +129,8 @@ static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
         if (ways & DEMI_DOWN) get[1] = top->in[1].size;
         if (ways & DEMI_UP) get[0] = low->in[0].size;
     } else {
-        answer = t->exchange_fn(&send[0], 8, &get[0], 8, &send[1], 8, &get[1], 8, t->user);
+        DEMI_USER(&s->head, "dem_slabs_step", 1, answer = t->exchange_fn(
+            &send[0], 8, &get[0], 8, &send[1], 8, &get[1], 8, t->user))
         if (answer) return demi_slabs_transport_failed(s, "exchange_fn", answer);
         if (!DEMI_GROW(low->world, low->in[0].bytes, (size_t)get[0]) ||
             !DEMI_GROW(top->world, top->in[1].bytes, (size_t)get[1]))
@@ -138,10 +140,9 @@ static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
         low->in[0].size = (size_t)get[0];
         top->in[1].size = (size_t)get[1];
     }
-    answer = t->exchange_fn(low->out[0].bytes, (size_t)send[0],
-                            low->in[0].bytes, (size_t)get[0],
-                            top->out[1].bytes, (size_t)send[1],
-                            top->in[1].bytes, (size_t)get[1], t->user);
+    DEMI_USER(&s->head, "dem_slabs_step", 1, answer = t->exchange_fn(
+        low->out[0].bytes, (size_t)send[0], low->in[0].bytes, (size_t)get[0],
+        top->out[1].bytes, (size_t)send[1], top->in[1].bytes, (size_t)get[1], t->user))
     return answer ? demi_slabs_transport_failed(s, "exchange_fn", answer) : DEM_OK;
 }
 

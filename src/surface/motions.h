@@ -165,7 +165,8 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
 }
 /* Sets the pose of a wall at a time. Rotations start from the first pose each time, so no error
    builds up. Velocities are exact derivatives. */
-static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose) {
+static void demi_wall_pose_at(const dem_world *world, const demi_wall *wall, double time,
+                              dem_pose *pose) {
     const dem_motion *m = &wall->motion;
     const double t = time - m->start;
     double gone, part;
@@ -204,7 +205,9 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
             (part*w*demi_cos(phase) + grows*demi_sin(phase))));
         break;
     }
-    case DEM_MOTION_USER: m->function(time, pose, m->user); break;
+    case DEM_MOTION_USER:
+        DEMI_USER(world, "the motion of walls", 1, m->function(time, pose, m->user))
+        break;
     case DEM_MOTION_TABLE: demi_table_pose(wall, t, pose); break;
     case DEM_MOTION_SERVO:
         pose->velocity = demi_scale(demi_unit(m->velocity), (dem_real)wall->servo.speed);

@@ -702,7 +702,6 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
                                   const demi_wall *wall, demi_wall *next) {
     demi_wall laid = *wall;
     dem_motion_row *rows = 0;
-    demi_calling was;
     if (demi_motion_check(w, id, motion) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (!demi_table_make(w, motion, &rows)) return demi_no_memory(w, "dem_wall_motion_set");
     laid.home = laid.pose;                      /* starts from its present pose */
@@ -714,9 +713,7 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     memset(&laid.servo, 0, sizeof laid.servo);
     laid.servo.time = laid.motion.start;
     laid.symmetric = demi_wall_symmetric(&laid);
-    was = demi_calls(w, "dem_wall_motion_set", 1);
-    demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
-    demi_called(w, was);
+    demi_wall_pose_at(w, &laid, w->clock.time, &laid.pose);
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
