@@ -104,7 +104,7 @@ def load(path=None):
                 continue
             raise ImportError("dem.py: %s has no function %s; it is not a library of this dem.h" % (name, function)) from None
         entry.restype, entry.argtypes = result, arguments
-        _lib.__dict__[function] = entry
+        _lib.__dict__[function] = _checked(entry, function, arguments or [])
     if hasattr(library, "dempy_sizes"):
         sizes = (ctypes.c_size_t*(len(structs) + 1)).in_dll(library, "dempy_sizes")
         for size, kind in zip(sizes, structs):
@@ -151,18 +151,62 @@ class Function:
         self.c = ctypes.CFUNCTYPE(result, *arguments)
 
 
+_LIMITS = {kind: (-2**(8*ctypes.sizeof(kind) - 1) if signed else 0, 2**(8*ctypes.sizeof(kind) - signed) - 1) for kinds, signed in (
+    ((ctypes.c_int8, ctypes.c_int16, ctypes.c_int32, ctypes.c_int64, ctypes.c_int, ctypes.c_long, ctypes.c_longlong), 1),
+    ((ctypes.c_uint8, ctypes.c_uint16, ctypes.c_uint32, ctypes.c_uint64, ctypes.c_uint, ctypes.c_ulong, ctypes.c_size_t), 0))
+    for kind in kinds}
+_NUMBERS = {ctypes.c_float, ctypes.c_double, *_LIMITS}
+
+
 def _number(value, kind):
-    """value as a number of an enum (which may be given by name) or of a C type; one character is its code."""
-    if isinstance(value, str):
-        if isinstance(kind, type) and issubclass(kind, enum.IntEnum):
-            try:
-                return kind[value.upper()]
-            except KeyError:
-                raise ValueError("%s has no %r; it has %s" % (kind.__name__, value, ", ".join(
-                    member.name.lower() for member in kind))) from None
-        if len(value) == 1:
-            return ord(value)
+    """value as a number of an enum (which may be given by name) or of a C type. A text, a float in the place of a whole
+    number and a bool in the place of a real raise TypeError; a number that does not fit raises OverflowError."""
+    names = isinstance(kind, type) and issubclass(kind, enum.IntEnum)
+    if names and isinstance(value, str):
+        try:
+            return kind[value.upper()]
+        except KeyError:
+            raise ValueError("%s has no %r; it has %s" % (kind.__name__, value, ", ".join(
+                member.name.lower() for member in kind))) from None
+    if isinstance(value, ctypes._SimpleCData):
+        value = value.value
+    if names or kind in _LIMITS:
+        try:
+            whole = operator.index(value)
+        except TypeError:
+            raise TypeError("%r is given, a whole number is needed" % (value,)) from None
+        low, high = _LIMITS[ctypes.c_int if names else kind]
+        if not low <= whole <= high:
+            raise OverflowError("%d is given, must be from %d to %d" % (whole, low, high))
+        return whole
+    if kind in _NUMBERS:
+        if type(value) is float and kind is ctypes.c_double:
+            return value
+        if isinstance(value, (str, bytes, bytearray, bool)) or not (hasattr(value, "__float__") or hasattr(value, "__index__")):
+            raise TypeError("%r is given, a number is needed" % (value,))
+        real = float(value)
+        if kind is ctypes.c_float and math.isinf(kind(real).value) and not math.isinf(real):
+            raise OverflowError("%r does not fit into single precision" % (value,))
+        return real
     return value
+
+
+def _checked(entry, name, kinds):
+    """The function `entry`, with its numbers checked: ctypes would take them modulo 2**32."""
+    places = [(i, kind, kind.make if isinstance(kind, type) and issubclass(kind, Struct) else None)
+              for i, kind in enumerate(kinds) if kind in _NUMBERS or isinstance(kind, type) and issubclass(kind, Struct)]
+    if not places:
+        return entry
+
+    def call(*values):
+        values = list(values)
+        for i, kind, make in places[:len(values)]:
+            try:
+                values[i] = make(values[i]) if make else _number(values[i], kind)
+            except (TypeError, OverflowError) as error:
+                raise type(error)("%s, argument %d: %s" % (name, i + 1, error)) from None
+        return entry(*values)
+    return call
 
 
 def _c(kind):
@@ -178,7 +222,9 @@ def _convert(value, kind):
             return ctypes.pointer(value)
         return ctypes.cast(_array(value, kind.kind), kind.c)
     if isinstance(kind, Text) or kind is str:
-        return value.encode() if isinstance(value, str) else value
+        if value is not None and not isinstance(value, (str, bytes, os.PathLike)):
+            raise TypeError("%r is given, a text is needed" % (value,))
+        return os.fsencode(value) if isinstance(value, os.PathLike) else value.encode() if isinstance(value, str) else value
     if isinstance(kind, type) and issubclass(kind, Struct):
         return kind.make(value)
     if isinstance(kind, Choices):
@@ -199,7 +245,7 @@ def _item(value, kind):
         return kind.make(value)
     if issubclass(kind, ctypes._Pointer):
         return kind() if value is None else ctypes.pointer(kind._type_.make(value))
-    return value
+    return _number(value, kind)
 
 
 def _array(value, kind, count=None, name="an array"):
@@ -235,7 +281,7 @@ def _flat(value, kind):
         elif hasattr(item, "__len__") and not isinstance(item, kind):
             yield from _flat(item, kind)
         else:
-            yield kind.make(item) if issubclass(kind, Struct) else item
+            yield kind.make(item) if issubclass(kind, Struct) else _number(item, kind)
 
 
 def _count(array, width, name):
@@ -270,7 +316,7 @@ def _functions(struct):
 class Struct(ctypes.Structure):
     """A struct of dem.h. Fields are keyword arguments; fields that are not given are 0."""
     __slots__ = ("_functions", "_of", "_extra")
-    rows, c_name, counts = [], "", {}
+    rows, c_name, counts, kinds = [], "", {}, {}
 
     def __init__(self, *values, **fields):
         super().__init__()
@@ -284,20 +330,36 @@ class Struct(ctypes.Structure):
         for name, value in fields.items():
             if name not in self.kinds:
                 raise TypeError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+            if name == "cylinder" and value in ("x", "y", "z"):
+                value = ord(value)                          # dem.h has the axis as a character
             try:
-                setattr(self, name, _convert(value, self.kinds[name]))
-            except (TypeError, ValueError) as error:
+                ctypes.Structure.__setattr__(self, name, _convert(value, self.kinds[name]))
+            except (TypeError, ValueError, OverflowError) as error:
                 raise type(error)("%s.%s: %s" % (type(self).__name__, name, error)) from None
             for path, item in [((name,), value)] if isinstance(value, Struct) else [
                     ((name, i), item) for i, item in enumerate(value) if isinstance(item, Struct)] if isinstance(value, (list, tuple)) else []:
                 for inner, function in _functions(item).items():        # C copies structs without their Python functions
                     self._functions[path + inner] = function
         for name, (field, width) in self.counts.items():    # a length follows from its array, unless it is given
-            if field in fields and fields[field] is not None and not fields.get(name):
+            if field in fields and fields[field] is not None:
                 given = fields[field]
+                if isinstance(given, ctypes._Pointer):      # nobody knows its length
+                    continue
                 size = len(_array(given, self.kinds[field].kind)) if isinstance(self.kinds[field], View) else len(
                     given) if hasattr(given, "__len__") else 1
-                setattr(self, name, size//width)
+                if fields.get(name) and fields[name]*width > size:
+                    raise ValueError("%s.%s is %d, but %s has %d numbers" % (type(self).__name__, name, fields[name], field, size))
+                if not fields.get(name):
+                    setattr(self, name, size//width)
+
+    def __setattr__(self, name, value):
+        kind = type(self).kinds.get(name)
+        if kind in _NUMBERS:
+            try:
+                value = _number(value, kind)
+            except (TypeError, OverflowError) as error:
+                raise type(error)("%s.%s: %s" % (type(self).__name__, name, error)) from None
+        super().__setattr__(name, value)
 
     @classmethod
     def make(cls, value):
@@ -603,6 +665,9 @@ class Handle:
                 setattr(copy, "_" + name, ctypes.cast(array, kind.c))
         free(self._at, struct)
         return copy
+
+    def __reduce_ex__(self, _):
+        raise TypeError("a %s owns memory of dem.h and cannot be copied; write and read a checkpoint" % type(self).__name__)
 
     def close(self):
         """Ends it and frees its memory; further calls raise an error. Leaving a `with` block does the same."""

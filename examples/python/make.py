@@ -804,6 +804,8 @@ import ctypes
 import enum
 import hashlib
 import html
+import math
+import operator
 import os
 import platform
 import shutil

@@ -4,6 +4,7 @@ LONG=1 runs whole lessons instead of a part of each. The C lessons that they are
 build/out/NAME/log (make lessons); those that have not are run. The last line is "N passed, N failed"."""
 import concurrent.futures
 import contextlib
+import copy
 import ctypes
 import gc
 import importlib.util
@@ -81,6 +82,30 @@ def compiled(name, text, *flags):
 
 
 # ---- the file itself, layouts ----
+
+@test("a number that is none or does not fit is refused by name: fields, arguments, elements, vectors")
+def _():
+    world, glass = heap()
+    text = "7"
+    for call, *words in ((lambda: world.material(density=text, young=1e6, restitution=0.5), "MaterialDesc.density"),
+                         (lambda: world.material(density=True, young=1e6, restitution=0.5), "MaterialDesc.density", "True"),
+                         (lambda: dem.World(threads=1.5), "WorldDesc.threads", "1.5"),
+                         (lambda: dem.World(body_reals=5), "WorldDesc.body_reals"),
+                         (lambda: world.step(1.5), "dem_world_step", "1.5"), (lambda: world.step(text), "dem_world_step"),
+                         (lambda: world.sphere(glass, text, (0, 0, 1)), "dem_sphere_add"),
+                         (lambda: world.sphere(glass, 0.001, (0, 0, text)), "dem_sphere_add", "Vec3.z"),
+                         (lambda: dem.FeedDesc(radius=(0.001, text)), "FeedDesc.radius"),
+                         (lambda: setattr(dem.WorldDesc(), "threads", text), "WorldDesc.threads"),
+                         (lambda: copy.deepcopy(world), "World", "copied")):
+        raises(TypeError, call, *words)
+    for wide in (2**32 + 1, -2**32 + 2, 2**31, 2**64):
+        raises(OverflowError, lambda: world.step(wide), "dem_world_step", str(wide))
+        raises(OverflowError, lambda: dem.World(threads=wide), "WorldDesc.threads", str(wide))
+        raises(OverflowError, lambda: setattr(dem.WorldDesc(), "threads", wide), "WorldDesc.threads")
+    raises(ValueError, lambda: dem.Selection(bodies=[world.body_id(0)], count=100), "Selection.count", "100")
+    same(dem.Region(box=(0, 0, 0, 1, 1, 1), cylinder="z").cylinder, ord("z"))
+    world.step(2)
+
 
 @test("dem.py is what make.py makes of dem.h")
 def _():
