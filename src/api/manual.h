@@ -46,6 +46,7 @@
            dem_box all = {{0, 0, 0}, {0, 0, 0}};           // all zero: the heaviest heap
            if (dem_repose_heap_get(world, all, &slope) == DEM_OK)
                printf("slope %.2f +- %.2f rad\n", slope.angle, slope.error);
+           else puts(dem_world_error_get(world));          // why it cannot be measured
            dem_world_report(world, stdout);                // laws, time step, loads: section 11
            dem_world_destroy(world);
            return 0;

@@ -9,7 +9,7 @@ static void demi_table_put(demi_out *o, int first, const double *value, int coun
     char text[32];
     int k;
     for (k = 0; k < count; k++)
-        fprintf(o->file, "%s%s", first && !k ? "" : ",", demi_format_real(text, value[k], 9));
+        fprintf(o->file, "%s%s", first && !k ? "" : ",", demi_format_cell(text, value[k]));
 }
 static void demi_table_vec(demi_out *o, dem_vec3 v) {
     const double value[3] = {(double)v.x, (double)v.y, (double)v.z};

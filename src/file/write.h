@@ -776,13 +776,17 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
                      "exists, may be written to and has room", call, path,
                      cause ? strerror(cause) : "unknown cause");
 }
+/* Prints a number as the cell of a table, with nothing if there is none: it is not finite. */
+static const char *demi_format_cell(char *buffer, double value) {
+    return demi_finite_double(value) ? demi_format_real(buffer, value, 9) : "";
+}
 /* Writes the time (s) and `count` values to `line`, of DEMI_CSV_LINE bytes, without a line end. */
 static void demi_csv_line(char *line, double time, const double *value, int count) {
     char number[32];
     int i, n = snprintf(line, DEMI_CSV_LINE, "%s", demi_format_real(number, time, 12));
     for (i = 0; i < count; i++)
         n += snprintf(line + n, (size_t)(DEMI_CSV_LINE - n), ",%s",
-                      demi_format_real(number, value[i], 9));
+                      demi_format_cell(number, value[i]));
 }
 static const char demi_loads_heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts";
 enum { DEMI_LOADS = 9 };
