@@ -176,6 +176,7 @@
            dem_box all = {{0, 0, 0}, {0, 0, 0}};           // all zero: the heaviest heap
            if (dem_repose_heap_get(world, all, &slope) == DEM_OK)
                printf("slope %.2f +- %.2f rad\n", slope.angle, slope.error);
+           else puts(dem_world_error_get(world));          // why it cannot be measured
            dem_world_report(world, stdout);                // laws, time step, loads: section 11
            dem_world_destroy(world);
            return 0;
@@ -266,8 +267,8 @@
 
    Sliding and rolling friction are 0 unless you set them. rolling_friction is mu_r in the largest
    moment, mu_r R* Fn. The effective radius R* is R/2 between two equal spheres and R at a wall:
-   between spheres, double a value that comes from a code with the limit mu_r R Fn. LIGGGHTS's model
-   epsd uses R*, as dem.h does: keep its values.
+   if your code limits the moment to mu_r R Fn, enter 2 mu_r here for sphere on sphere. LIGGGHTS's
+   model epsd uses R*, as dem.h does: keep its values.
 
    --- 5. Choosing a contact law ---
 
@@ -303,10 +304,10 @@
        }
        desc.law = sticky; desc.law_memory = 3; desc.law_vectors = 1;
 
-   law_memory is the number of reals of contact history, law_vectors how many vectors they begin
-   with. Other fields are law_rows (the same law for many contacts at once, which is faster:
-   >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt;
-   0: that of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in
+   law_memory is the number of reals of contact history; law_vectors: how many leading triples of
+   them are vectors. Other fields are law_rows (the same law for many contacts at once, which is
+   faster: >>law-rows), law_stiffness (N/m, largest stiffness of the law, which limits dt; 0: that
+   of the built-in law), law_range (the law acts across gaps up to it), law_who (fills in
    c->who: ids, radii, masses, user-defined numbers) and law_rate, a function that returns how
    fast the law changes such numbers, so that dem.h can limit dt. Laws see the velocity at the
    time of the positions. The Verlet schemes and leapfrog predict it from the half-step velocity
@@ -461,8 +462,8 @@
    An id (dem_body, dem_wall, ...) stays valid until its object is removed. Ids are never reused: a
    new body in the same slot has another generation. All-zero ids name nothing. Indices into the
    arrays of dem_bodies_get change whenever bodies are sorted; ids do not. All memory comes from
-   desc.allocator. After its first steps a run allocates nothing, unless more grains come together
-   than before.
+   desc.allocator. After its first steps a run allocates memory only when there are more neighbour
+   pairs than ever before.
 
    A function that can fail returns a dem_result, a null id or a null pointer, and stores one
    message:
@@ -470,11 +471,11 @@
        if (dem_world_run(world, 1, 0, 0) != DEM_OK) puts(dem_world_error_get(world));
 
    A message names the function, the value, the limit, the likely cause and the remedy. After a
-   failed call the world is as it was before. If a call that builds the scene fails and nothing
-   reads its message, the next run refuses to start and repeats it. Null worlds, descs and result
-   pointers are errors, not crashes. A run that goes wrong (a force that is not finite, an overlap
-   larger than a radius) stops at that step and says why. dem.h never exits or aborts, and it prints
-   only where you call a function that prints.
+   failed call the world is as it was before. If a call that builds the scene fails and the program
+   does not read the message, the next run fails too, with the same message. Null worlds, descs and
+   result pointers are errors, not crashes. A run that goes wrong (a force that is not finite, an
+   overlap larger than a radius) stops at that step and says why. dem.h never exits or aborts, and
+   it prints only where you call a function that prints.
 
    Laws, force fields, motions, regions, progress functions and observers may call every function
    that takes the world as const; within a step dem_bodies_select and dem_bodies_means_get fail.
@@ -492,11 +493,11 @@
    any other transport: docs/parallel.md.
 
    Different worlds may be used from different threads at the same time. Several threads may also
-   read one world by functions that take it as const, while none changes it. Exceptions, which write
-   to the world or allocate, are calls that fail, dem_world_error_get, dem_progress_print,
-   dem_world_report, dem_contacts_get, dem_stress_get, dem_mixing_get, dem_bodies_select,
-   dem_bodies_means_get, dem_repose_heap_get, dem_repose_drum_get, and in a periodic world
-   dem_bodies_get, which wraps positions into the box.
+   read one world by functions that take it as const, while none changes it. These calls take const
+   but are not safe on several threads, because they write to the world or allocate: calls that
+   fail, dem_world_error_get, dem_progress_print, dem_world_report, dem_contacts_get,
+   dem_stress_get, dem_mixing_get, dem_bodies_select, dem_bodies_means_get, dem_repose_heap_get,
+   dem_repose_drum_get, and in a periodic world dem_bodies_get, which wraps positions into the box.
 
    --- 14. Compile-time options, extensions ---
 
@@ -736,7 +737,9 @@ DEM_INLINE dem_vec3 dem_quat_unrotate(dem_quat q, dem_vec3 v) {
 /* ---- ids ----
    An id names an object of one world. An all-zero id is the null id: it names nothing. */
 typedef struct dem_material { int32_t id; } dem_material;    /* counts from 1 */
-typedef struct dem_wall { int32_t id; } dem_wall;            /* counts from 1 */
+/* Counts from 1. A wall added after a removal gets an id of a later generation, such as 262145:
+   ids are names, not indices. */
+typedef struct dem_wall { int32_t id; } dem_wall;
 typedef struct dem_field { int32_t id; } dem_field;          /* counts from 1 */
 typedef struct dem_group { int32_t id; } dem_group;          /* counts from 1 in desc.groups */
 typedef struct dem_shape { int32_t id; } dem_shape;          /* counts from 1; 0 means a sphere */
@@ -1436,8 +1439,9 @@ typedef dem_real (*dem_growth_fn)(const dem_body_state *body, dem_body id, doubl
 
 /* A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was
    when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
-   derivatives of position and rotation. It is called twice per step, for its end and its middle
-   (with impulses for its end, and for the middle and the end of the next step), from one thread.
+   derivatives of position and rotation. It is called twice per step, for its end and its middle,
+   from one thread. With impulses dem.h also calls it for the next step: it must be valid one step
+   ahead.
    dem_world_check calls it too, also for later times, and reports a velocity or spin that is not
    the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s,
    rad/s) stops the run with DEM_ERROR_UNSTABLE. */
@@ -1740,6 +1744,10 @@ typedef struct dem_world_desc {
     int orientations;              /* 1 follows the orientations of spheres too */
 
     /* -- running -- */
+    /* 0 to 1, in radii (see dem_counters.overlap_max): a step after which an overlap is larger ends
+       the run with DEM_ERROR_STOPPED, because grains are jammed or too soft. 0 means off. The
+       report and dem_progress_print name an overlap above 0.05. */
+    dem_real overlap_stop;
     int ledger;                    /* 1 accounts for energy, see dem_ledger_get */
     /* Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are
        used while that is faster; results are the same. */
@@ -1768,8 +1776,8 @@ DEM_API const char *dem_world_error_get(const dem_world *world);
 /* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
 /* Returns the desc as given, with the present gravity, domain and dt, the search and integrator in
-   use, and thickness and threads where they were 0. skin is the present one: 0 before the first
-   list, and where desc.skin is below 0. Other zeros stay 0, such as laws, sweeps and tolerance. */
+   use, and thickness and threads where they were 0. skin: present value; 0 before the first
+   list or if desc.skin < 0. Other zeros stay 0, such as laws, sweeps and tolerance. */
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
 /* ---- materials ---- */
@@ -1824,7 +1832,7 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
      the given one if E* is unknown because a material has no young;
    - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu. */
 typedef struct dem_pair {
-    dem_real young_eff;            /* Pa, E*, > 0; where a material's young may be 0, it may, too */
+    dem_real young_eff;            /* Pa, E*, > 0; may be 0 where `young` may */
     dem_real shear_eff;            /* Pa, G* */
     dem_real restitution;          /* > 0 and <= 1: e; may be 0 with impulses */
     dem_real friction;             /* sliding friction mu, >= 0 */
@@ -2259,7 +2267,8 @@ typedef enum dem_motion_kind {
     DEM_MOTION_FIXED = 0,          /* at rest */
     DEM_MOTION_TRANSLATING,        /* with `velocity` */
     DEM_MOTION_ROTATING,           /* at `speed` about `axis` through `point`, right-handed */
-    /* displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start */
+    /* displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start.
+       If sin(phase) is not 0, only with a ramp or before the first step: the wall would jump */
     DEM_MOTION_OSCILLATING,
     DEM_MOTION_USER,               /* as `function` says */
     DEM_MOTION_TABLE,              /* through the poses of `table`, smoothly */
@@ -2287,7 +2296,7 @@ typedef struct dem_motion {
     /* s. Until then rotating, translating and servo walls are at rest. A time in the past means
        now. */
     double start;
-    /* What DEM_MOTION_USER calls. It must not turn a mesh or profile that is as long as a period,
+    /* The function of DEM_MOTION_USER. It must not rotate a mesh or profile that spans a period,
        because the ends stay joined to those of its images: use a table. */
     dem_motion_fn function;
     void *user;                    /* passed to function */
@@ -2738,8 +2747,9 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
                             bodies overlap by the smaller radius, a body and a wall by that of the
                             body, or a motion or desc.growth returns impossible values
        DEM_ERROR_FILE, DEM_ERROR_FORMAT    an output cannot be written; its CSV has other columns
-       DEM_ERROR_STOPPED    an output stopped the run; or desc.unsolved_stops is 1 and the sweeps of
-                            a step did not reach the tolerance
+       DEM_ERROR_STOPPED    an output stopped the run; desc.unsolved_stops is 1 and the sweeps of a
+                            step did not reach the tolerance; or an overlap is above
+                            desc.overlap_stop. The step is complete.
        DEM_ERROR_MEMORY     The bodies may have moved already; the step then counts as taken. The
                             next call completes it first, here or in a world that has read a
                             checkpoint written meanwhile. The bits are those of a run without the
@@ -3551,7 +3561,8 @@ DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 /* Reads a checkpoint and replaces the state of the world, which then continues bit for bit. The
    world must have been built like the one that wrote it, with the same desc, materials, pairs,
    shapes, walls, fields, feeds and outlets. Functions and user pointers are not stored. Number of
-   threads, allocator, allow_large_dt, unsolved_stops, law_rows and user pointers may differ.
+   threads, allocator, allow_large_dt, unsolved_stops, overlap_stop, law_rows and user pointers may
+   differ.
    Errors: a file that is cut short, damaged, or of another version, precision, DEM_DOMAIN_BODIES or
    memory layout; a file of another scene, for which the message names the first field that differs,
    with both values. */
@@ -3970,6 +3981,7 @@ static double demi_clock(void) {                          /* wall time, s; for p
    --------------------------------------------------------------------------------------------- */
 /* Limits of numbers that enter the library. Within them, squares and quotients stay finite. */
 #define DEMI_FARTHEST 1e15          /* largest m, m/s, rad/s and s */
+#define DEMI_OVERLAP_LIMIT 0.05     /* in radii: above it a material counts as too soft */
 #define DEMI_LEAST 1e-12            /* m, smallest extent of a surface */
 #define DEMI_MOST 1e30              /* largest modulus, density and stiffness, SI units */
 #define DEMI_MOST_RATIO 1e9         /* largest dimensionless coefficient */
@@ -4797,7 +4809,7 @@ typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are vali
 } demi_margin;
 typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int tangent, rolling;          /* laws in force */
-    int twisting;                  /* springs, and a pair has spinning friction */
+    int twisting;                  /* a pair has spinning friction, and no user-defined law */
     int uniform;                   /* one radius, one mass, one material, no fixed body */
     int fixed_count;
     int unlike;                    /* number of bodies that pairs do not see as lone spheres */
@@ -4819,9 +4831,18 @@ typedef struct demi_levels {       /* >>search */
     double fine;                   /* m, largest radius of the finest class */
     double tests[2];               /* estimated distance tests per body: one grid, levels */
 } demi_levels;
+/* Overlaps above DEMI_OVERLAP_LIMIT since the last reset (demi_crushed_note). */
+typedef struct demi_crushed {
+    double next;                   /* relative to the radius: overlap that is noted next; 0: none
+                                      has been */
+    double since, time;            /* s, of the first and of the last note */
+    int32_t a, b, wall, none;      /* of the last: slots of the bodies + 1 (b 0: a wall), id of the
+                                      wall; padding, 0 */
+} demi_crushed;
 typedef struct demi_booked {       /* >>ledger: totals and maxima since the beginning */
     double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
     double overlap_max, speed_max; /* relative to the radius; m/s */
+    demi_crushed crushed;
     uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
     double due[5];                 /* J: energies that impulses, walls and force fields will take
                                       or give in the next step, see demi_impulses_tell */
@@ -4937,8 +4958,9 @@ typedef struct demi_output {
 } demi_output;
 
 /* The call that is running a user-defined function; who is null if none. within: 1 while lists and
-   sums are incomplete, 0 where the world is consistent and files may be written. */
-typedef struct demi_calling { const char *who; int within; } demi_calling;
+   sums are incomplete, 0 where the world is consistent and files may be written. set: 1 if
+   demi_calls has changed it, so that demi_called restores it. */
+typedef struct demi_calling { const char *who; int within, set; } demi_calling;
 
 /* How many threads a world uses, see demi_crew_end. Not part of the state. */
 typedef struct demi_crew {
@@ -4953,6 +4975,8 @@ typedef struct demi_crew {
    outputs: reading a checkpoint does not change them. */
 typedef struct demi_lookers {
     demi_calling calling;          /* see demi_calls */
+    dem_world *of;                 /* the world of the user that holds the mark: the original of a
+                                      copy, the head of slabs; null: this one */
     int tenths_told;               /* progress into a file: last tenth of this run reported */
     int under_way;                 /* > 0: an output runs a user-defined function; steps fail */
     dem_replay *films;             /* open replays, which record frames automatically */
@@ -5248,9 +5272,36 @@ struct dem_world {
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */
 };
-/* Calls a task for each work group. */
+/* Marks that user-defined functions run: calls that change the world then fail (demi_null) until
+   demi_called gets the value returned here. `who` names the function in messages; within: 1 if
+   files cannot be written either. A mark stays if there is one that forbids as much, so only the
+   thread that sets a mark removes it. */
+DEM_INLINE demi_calling demi_calls(const dem_world *w, const char *who, int within) {
+    demi_calling *now = &((dem_world *)(w->look.of ? w->look.of : w))->look.calling;
+    demi_calling was = *now;
+    was.set = !was.who || within > was.within;
+    if (was.set) { now->who = who; now->within = within; }
+    return was;
+}
+DEM_INLINE void demi_called(const dem_world *w, demi_calling was) {
+    if (was.set) ((dem_world *)(w->look.of ? w->look.of : w))->look.calling = was;
+}
+/* Every call of a user-defined function is in one of these two, as tests/calls.awk checks. The
+   second is for functions that may change the world, but not step or destroy it. */
+#define DEMI_USER(w, who, within, call) { \
+    const demi_calling demi_was = demi_calls(w, who, within); \
+    call; \
+    demi_called(w, demi_was); }
+#define DEMI_USER_FREE(w, call) { (w)->look.under_way++; call; (w)->look.under_way--; }
+/* In a function that stands in for one of the user's, and that DEMI_USER calls. */
+#define DEMI_USER_WITHIN(call) call
+
+/* Calls a task for each work group. Marks this as a call of user-defined functions, because tasks
+   on several threads cannot. */
 static void demi_domains_do(dem_world *w, demi_task task) {
+    const demi_calling was = demi_calls(w, "a step", 1);
     demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
+    demi_called(w, was);
 }
 /* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this
    index. So indices are reused, and the id of a removed wall stays invalid. */
@@ -5517,26 +5568,6 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
                        "not been read: \"%.320s\"; correct that call, or read dem_world_error_get "
                        "and continue without it", why);
 }
-/* Call this before a user-defined function. Calls that change the world fail until demi_called gets
-   the value returned here. `who` names the function in messages; `within`: 1 inside a step. */
-static demi_calling demi_calls(dem_world *w, const char *who, int within) {
-    const demi_calling was = w->look.calling;
-    w->look.calling.who = who;
-    w->look.calling.within = within;
-    return was;
-}
-static void demi_called(dem_world *w, demi_calling was) { w->look.calling = was; }
-/* The same for a function that only reads the world, possibly on several threads. Only a thread
-   that finds no call in progress sets the mark, and only that thread removes it, so the mark cannot
-   be left behind. */
-static demi_calling demi_look_calls(const dem_world *w, const char *who) {
-    const demi_calling was = w->look.calling;
-    if (!was.who) demi_calls((dem_world *)w, who, 1);
-    return was;
-}
-static void demi_look_called(const dem_world *w, demi_calling was) {
-    if (!was.who) demi_called((dem_world *)w, was);
-}
 /* The first line of every public function is one of the next three. They return 1 if the world or
    `pointer` is null, and store an error message if there is a world to hold it. The first is for
    functions that only read: any thread and any user-defined function may call them. */
@@ -5579,12 +5610,19 @@ static dem_result demi_no_memory(dem_world *w, const char *call) {
                      "or a smaller skin; nothing was changed", call, (double)w->bytes/1e6);
 }
 
-static void *demi_raw_alloc(const dem_allocator *a, size_t size) {
-    return a->alloc_fn ? a->alloc_fn(size, a->user) : malloc(size);
+/* Allocate and free by the user's allocator, which may not change the world; w is null while there
+   is none. */
+static void *demi_raw_alloc(dem_world *w, const dem_allocator *a, size_t size) {
+    void *p;
+    if (!a->alloc_fn) return malloc(size);
+    if (!w) return DEMI_USER_WITHIN(a->alloc_fn(size, a->user));
+    DEMI_USER(w, "the allocation of memory", 1, p = a->alloc_fn(size, a->user))
+    return p;
 }
-static void demi_raw_free(const dem_allocator *a, void *p, size_t size) {
-    if (!p) return;
-    if (a->free_fn) a->free_fn(p, size, a->user); else free(p);
+static void demi_raw_free(dem_world *w, const dem_allocator *a, void *p, size_t size) {
+    if (!p || !a->free_fn) free(p);
+    else if (!w) DEMI_USER_WITHIN(a->free_fn(p, size, a->user));
+    else DEMI_USER(w, "the release of memory", 1, a->free_fn(p, size, a->user))
 }
 /* Header in front of every allocation. The data after it begin on a cache line, so that no row of
    four reals crosses one. The header stores the size, so that freeing and growing need no size
@@ -5601,21 +5639,6 @@ static demi_block *demi_block_of(void *data) { return (demi_block *)data - 1; }
 static size_t demi_room(const void *data, size_t item) {
     return data ? ((const demi_block *)data - 1)->bytes/item : 0;
 }
-/* Allocate and free by the user's allocator, which may not change the world. */
-static void *demi_block_alloc(dem_world *w, size_t bytes) {
-    const demi_calling was = w->look.calling;
-    void *p;
-    if (w->desc.allocator.alloc_fn) demi_calls(w, "the allocation of memory", 1);
-    p = demi_raw_alloc(&w->desc.allocator, bytes);
-    if (w->desc.allocator.alloc_fn) demi_called(w, was);
-    return p;
-}
-static void demi_block_free(dem_world *w, void *p, size_t bytes) {
-    const demi_calling was = w->look.calling;
-    if (w->desc.allocator.free_fn) demi_calls(w, "the release of memory", 1);
-    demi_raw_free(&w->desc.allocator, p, bytes);
-    if (w->desc.allocator.free_fn) demi_called(w, was);
-}
 /* Allocates `count` items of `size` bytes, set to 0, and links them into a list of the world. With
    DEMI_LOOSE they are in no list and the caller must free them. Returns null if memory runs out,
    the product overflows or is 0. */
@@ -5625,7 +5648,7 @@ static void *demi_hold(dem_world *w, int chain, size_t count, size_t size) {
     demi_block *block;
     int in;
     if ((size && count > (size_t)-1/2/size) || !bytes) return 0;
-    p = (unsigned char *)demi_block_alloc(w, bytes + 2*DEMI_LINE);
+    p = (unsigned char *)demi_raw_alloc(w, &w->desc.allocator, bytes + 2*DEMI_LINE);
     if (!p) return 0;
     in = 2*DEMI_LINE - (int)((uintptr_t)p%DEMI_LINE);
     memset(p + in, 0, bytes);
@@ -5651,7 +5674,8 @@ static void demi_free(dem_world *w, void *data) {
     if (block->before) block->before->after = block->after;
     else if (block->chain) w->chains[block->chain] = block->after;
     w->bytes -= block->bytes + 2*DEMI_LINE;
-    demi_block_free(w, (unsigned char *)data - block->in, block->bytes + 2*DEMI_LINE);
+    demi_raw_free(w, &w->desc.allocator, (unsigned char *)data - block->in,
+                  block->bytes + 2*DEMI_LINE);
 }
 /* True if the allocation is in this list of the world. A copy of a world refers to allocations of
    the original, which it must not free. */
@@ -5900,6 +5924,10 @@ static const demi_field_row demi_booked_rows[] = {
     DEMI_N(energy, 'd', DEMI_TO_SLAB | DEMI_SUM), DEMI_N(inserted, 'd', DEMI_TO_SLAB | DEMI_SUM),
     DEMI_N(removed, 'd', DEMI_TO_SLAB | DEMI_SUM), DEMI_N(throughput, 'd', DEMI_TO_SLAB | DEMI_SUM),
     DEMI_N(overlap_max, 'd', DEMI_TO_SLAB | DEMI_LARGEST), DEMI_N(met, 'u', DEMI_EITHER),
+    DEMI_N(crushed.next, 'd', DEMI_FROM | DEMI_TO_SLAB), DEMI_N(crushed.a, 'i', DEMI_TO_SLAB),
+    DEMI_N(crushed.since, 'd', DEMI_ANY | DEMI_TO_SLAB), DEMI_N(crushed.b, 'i', DEMI_TO_SLAB),
+    DEMI_N(crushed.time, 'd', DEMI_ANY | DEMI_TO_SLAB), DEMI_N(crushed.wall, 'i', DEMI_TO_SLAB),
+    DEMI_N(crushed.none, 'i', 0),
     DEMI_N(speed_max, 'd', DEMI_FROM | DEMI_TO_SLAB | DEMI_HEADS), DEMI_N(due, 'd', 0),
     DEMI_N(residual, 'd', 0), DEMI_N(residual_rms, 'd', 0), DEMI_N(unsolved, 'u', 0),
     DEMI_N(sweeps, 'i', 0), DEMI_N(none, 'i', 0), DEMI_ROW_END};
@@ -5983,6 +6011,8 @@ static const demi_field_row demi_world_desc_rows[] = {
     DEMI_ROW_SAID(threads, 'i', DEMI_FROM | DEMI_FREE, 64, "threads must be 0 to 64, where 0 means "
                   "as many as OpenMP offers"), DEMI_ROW_FREE(dem_world_desc, allocator),
     DEMI_ROW_FREE(dem_world_desc, allow_large_dt), DEMI_ROW_FREE(dem_world_desc, unsolved_stops),
+    DEMI_ROW_SAID(overlap_stop, 'r', DEMI_FROM | DEMI_FREE, 1, "overlap_stop must be 0 to 1, in "
+                  "radii; 0 means off"),
     DEMI_ROW_FREE(dem_world_desc, law_rows), DEMI_ROW_FREE(dem_world_desc, law_user),
     DEMI_ROW_FREE(dem_world_desc, force_user),
     DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_FREE(dem_world_desc, growth_user),
@@ -6094,12 +6124,15 @@ static const demi_law_row demi_tangent_laws[] = {{DEM_TANGENT_AUTO, 0, 0, 0, 0, 
 static const demi_law_row demi_rolling_laws[] = {{DEM_ROLLING_AUTO, 0, 0, 0, 0, "auto", 0},
     {DEM_ROLLING_NONE, 0, 0, 0, 0, "none", 0}, DEMI_ROLLING_LAWS(DEMI_LAW_ROW)
     {-1, 0, 0, 0, 0, 0, 0}};
-/* Returns the law of the desc, with AUTO replaced by the law that it means if a pair needs one. */
+/* Returns the law of the desc, with AUTO replaced by the law that it means if a pair needs one.
+   Impulses have no laws: with them it is AUTO, so that a coefficient alone decides. */
 static int demi_tangent_meant(const dem_world *w) {
-    return w->desc.tangent_law == DEM_TANGENT_AUTO ? DEM_TANGENT_SPRING : (int)w->desc.tangent_law;
+    return w->desc.tangent_law == DEM_TANGENT_AUTO || !demi_response_is(w, DEMI_LAWS)
+        ? DEM_TANGENT_SPRING : (int)w->desc.tangent_law;
 }
 static int demi_rolling_meant(const dem_world *w) {
-    return w->desc.rolling_law == DEM_ROLLING_AUTO ? DEM_ROLLING_EPSD : (int)w->desc.rolling_law;
+    return w->desc.rolling_law == DEM_ROLLING_AUTO || !demi_response_is(w, DEMI_LAWS)
+        ? DEM_ROLLING_EPSD : (int)w->desc.rolling_law;
 }
 /* True if the normal law of the desc has this trait. */
 DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
@@ -6206,7 +6239,7 @@ static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_c
     const int slides = laws->at_sliding < DEMI_MEMORY;
     demi_force_clear(f);
     c->sliding = slides ? memory[laws->at_sliding] : 0;
-    if (w->desc.law) w->desc.law(c, memory, f);
+    if (w->desc.law) DEMI_USER(w, "the evaluation of contacts", 1, w->desc.law(c, memory, f))
     else {
         laws->normal->law(c, memory + laws->at_normal, f);
         if (laws->tangent->law) laws->tangent->law(c, memory, f);
@@ -11262,7 +11295,8 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
 }
 /* Sets the pose of a wall at a time. Rotations start from the first pose each time, so no error
    builds up. Velocities are exact derivatives. */
-static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose) {
+static void demi_wall_pose_at(const dem_world *world, const demi_wall *wall, double time,
+                              dem_pose *pose) {
     const dem_motion *m = &wall->motion;
     const double t = time - m->start;
     double gone, part;
@@ -11291,8 +11325,9 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     case DEM_MOTION_OSCILLATING: {
         const dem_vec3 way = demi_unit(m->velocity);
         const double w = 2*DEMI_PI*(double)m->frequency, phase = w*t + (double)m->phase;
-        const double u = m->ramp > 0 && t < m->ramp ? DEMI_MAX(t, 0)/m->ramp : 1;
+        const double u = m->ramp > 0 && t < m->ramp ? t/m->ramp : 1;
         const double grows = u < 1 ? 6*u*(1 - u)/m->ramp : 0;
+        if (t < 0) break;
         part = u*u*(3 - 2*u);
         pose->position = demi_add(pose->position, demi_scale(way, (dem_real)(
             part*(double)m->amplitude*demi_sin(phase))));
@@ -11300,7 +11335,9 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
             (part*w*demi_cos(phase) + grows*demi_sin(phase))));
         break;
     }
-    case DEM_MOTION_USER: m->function(time, pose, m->user); break;
+    case DEM_MOTION_USER:
+        DEMI_USER(world, "the motion of walls", 1, m->function(time, pose, m->user))
+        break;
     case DEM_MOTION_TABLE: demi_table_pose(wall, t, pose); break;
     case DEM_MOTION_SERVO:
         pose->velocity = demi_scale(demi_unit(m->velocity), (dem_real)wall->servo.speed);
@@ -11340,14 +11377,30 @@ static const demi_field_row demi_servo_rows[] = {
     DEMI_SERVED(travel, DEMI_ANY), DEMI_SERVED(stiffness, DEMI_ANY),
     DEMI_SERVED(damping, DEMI_ANY), DEMI_SERVED(time, DEMI_ANY), DEMI_ROW_END};
 
+/* Upper bound of the speed, m/s, of all points of a wall in a pose. For vertices two bounds hold,
+   and the lower one counts: the speed of the frame's origin plus spin times the extent, and the
+   largest speed of a corner of their box, since the speed is a convex function of the point. */
+static double demi_pose_pace(const demi_wall *wall, const dem_pose *p) {
+    const double far = (double)DEMI_MAX(wall->extent, wall->radius);
+    const double pace = (double)demi_length(p->velocity) + (double)demi_length(p->spin)*far;
+    double corner = 0;
+    int i;
+    for (i = 0; i < 8 && wall->vertex_count; i++) {
+        const dem_vec3 x = demi_v(i & 1 ? wall->box.hi.x : wall->box.lo.x,
+                                  i & 2 ? wall->box.hi.y : wall->box.lo.y,
+                                  i & 4 ? wall->box.hi.z : wall->box.lo.z);
+        corner = DEMI_MAX(corner, (double)demi_length(demi_add(p->velocity,
+            demi_cross(p->spin, demi_rotate(p->rotation, x)))));
+    }
+    return wall->vertex_count ? DEMI_MIN(pace, corner) : pace;
+}
 /* Upper bound of the speed of a wall's surface, m/s; 0 if its motion leaves the surface in place;
    -1 if there is no bound. */
 static double demi_wall_speed(const demi_wall *wall) {
     const dem_pose *p = &wall->pose;
     if (wall->kind == DEMI_WALL_NONE || wall->symmetric) return 0;
     if (wall->extent < 0 && demi_length(p->spin) > 0) return -1;   /* infinite: search every step */
-    if (wall->extent < 0) return (double)demi_length(p->velocity);
-    return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->extent;
+    return wall->extent < 0 ? (double)demi_length(p->velocity) : demi_pose_pace(wall, p);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -12033,6 +12086,14 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                                                              motion->velocity) > 0))
         return demi_refuse(w, "dem_wall_motion_set", "velocity of oscillating wall %d is zero, but "
                            "gives the direction of its motion; set it", (int)id.id);
+    if (motion->kind == DEM_MOTION_OSCILLATING && !(motion->ramp > 0) &&
+        fabs(demi_sin((double)motion->phase)) > 1e-6 &&
+        (w->clock.steps || motion->start > w->clock.time))
+        return demi_refuse(w, "dem_wall_motion_set", "wall %d would jump by %.3g m (amplitude "
+                           "sin(phase)) as its oscillation begins, must be 0 after the first step: "
+                           "it would throw the grains in its way; set motion.ramp, or phase 0",
+                           (int)id.id, (double)motion->amplitude*
+                           demi_sin((double)motion->phase));
     if (motion->kind == DEM_MOTION_USER && !motion->function)
         return demi_refuse(w, "dem_wall_motion_set", "wall %d has kind DEM_MOTION_USER and no "
                            "function; set motion.function", (int)id.id);
@@ -12046,7 +12107,6 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
                                   const demi_wall *wall, demi_wall *next) {
     demi_wall laid = *wall;
     dem_motion_row *rows = 0;
-    demi_calling was;
     if (demi_motion_check(w, id, motion) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (!demi_table_make(w, motion, &rows)) return demi_no_memory(w, "dem_wall_motion_set");
     laid.home = laid.pose;                      /* starts from its present pose */
@@ -12058,9 +12118,7 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     memset(&laid.servo, 0, sizeof laid.servo);
     laid.servo.time = laid.motion.start;
     laid.symmetric = demi_wall_symmetric(&laid);
-    was = demi_calls(w, "dem_wall_motion_set", 1);
-    demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
-    demi_called(w, was);
+    demi_wall_pose_at(w, &laid, w->clock.time, &laid.pose);
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
@@ -16041,26 +16099,23 @@ static void demi_effects_memory(dem_world *w) {
     w->memory_stride = response->memory ? response->memory : w->laws.memory;
     w->vector_mask = response->memory ? response->vectors : w->laws.vectors;
 }
-/* Sets the three to 1 if any pair of materials that is not ignored has friction, rolling friction,
-   or static friction above its sliding friction. */
-static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int *sticks) {
+/* What rubs in some pair of materials that is not ignored: 1 for friction, for rolling friction,
+   for static friction above the sliding friction, and for spinning friction, which a user-defined
+   law does not have. */
+typedef struct demi_rubbing { int friction, rolling, sticks, twisting; } demi_rubbing;
+static demi_rubbing demi_pairs_rub(const dem_world *w) {
+    demi_rubbing rub = {0, 0, 0, 0};
     int i, j;
-    *friction = *rolling = *sticks = 0;
     for (i = 0; i < w->material_count; i++)
         for (j = 0; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
             if (p->ignored) continue;
-            *friction |= p->friction > 0 || p->friction_static > 0;
-            *rolling |= p->rolling_friction > 0;
-            *sticks |= p->friction_static > p->friction;
+            rub.friction |= p->friction > 0 || p->friction_static > 0;
+            rub.rolling |= p->rolling_friction > 0;
+            rub.sticks |= p->friction_static > p->friction;
+            rub.twisting |= p->spinning_friction > 0 && !w->desc.law;
         }
-}
-/* True with the built-in laws for springs if any pair of materials has spinning friction. */
-static int demi_pairs_twist(const dem_world *w) {
-    int i, twist = 0;
-    for (i = 0; i < w->material_count*DEMI_MATERIALS; i++)
-        twist |= i%DEMI_MATERIALS < w->material_count && w->pairs[i].given.spinning_friction > 0;
-    return twist && !w->desc.law && demi_response_is(w, DEMI_LAWS);
+    return rub;
 }
 /* Returns the largest gap, m, at which a law is called, if the largest radius is `radius`. With
    impulses contacts are found ahead of time: three steps of the fastest body, at most one radius,
@@ -16098,16 +16153,16 @@ static double demi_fastest(const dem_world *w) {
 }
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
-    int i, friction, rolling, sticks;
-    demi_pairs_rub(w, &friction, &rolling, &sticks);
-    w->effects.sticks = sticks;
-    w->effects.twisting = demi_pairs_twist(w);
+    const demi_rubbing rub = demi_pairs_rub(w);
+    int i;
+    w->effects.sticks = rub.sticks;
+    w->effects.twisting = rub.twisting;
     for (i = w->effects.ignoring = 0; i < w->material_count; i++)
         w->effects.ignoring |= demi_ignorers(w, i) != 0;
     w->normal = (int)w->desc.normal_law;
     w->effects.clustered = demi_clustered(w);
-    w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
-    w->effects.rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
+    w->effects.tangent = rub.friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
+    w->effects.rolling = rub.rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
     demi_effects_memory(w);
     w->effects.uniform = w->bodies.count > 0;
     w->effects.fixed_count = 0;
@@ -17772,7 +17827,7 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, cons
     demi_tile_own(t, r, same, q, w->desc.law_who, c);
     demi_force_clear(&f);
     demi_recall(t, q, 0, keep, m);
-    w->desc.law(c, m, &f);
+    DEMI_USER(w, "the evaluation of contacts", 1, w->desc.law(c, m, &f))
     demi_keep(t, q, 0, keep, m);
     if (same->at_sliding < DEMI_MEMORY) t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
     demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->alike, 1, 1);
@@ -17865,7 +17920,7 @@ static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, i
     c.slides = t->memory[same.at_sliding];
     if (same.at_sliding == DEMI_MEMORY) memset(c.slides, 0, sizeof t->memory[0]);   /* of no pair */
     for (e = 0; e < 7; e++) c.energy[e] = r->ledger ? t->part[energies[e]] : 0;
-    demi_own_rows(w)(&c);
+    DEMI_USER(w, "the evaluation of contacts", 1, demi_own_rows(w)(&c))
     demi_answer_choose(r, 1)(t, r, full);
 }
 
@@ -24045,13 +24100,8 @@ enum { DEMI_COLOURS = 64, DEMI_SWEEP_RUN = 256 };
 
 /* True if some pair of materials has rolling or spinning friction. */
 static int demi_impulses_twist(const dem_world *w) {
-    int i, j, twist = 0;
-    for (i = 0; i < w->material_count; i++)
-        for (j = i; j < w->material_count; j++) {
-            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
-            twist |= !p->ignored && (p->rolling_friction > 0 || p->spinning_friction > 0);
-        }
-    return twist;
+    const demi_rubbing rub = demi_pairs_rub(w);
+    return rub.rolling || rub.twisting;
 }
 /* Returns I^-1 x in the world frame; t: xx yy zz xy xz yz of I^-1. */
 DEM_INLINE dem_vec3 demi_tensor_times(const dem_real *t, dem_vec3 x) {
@@ -26330,9 +26380,9 @@ static void demi_ahead(dem_world *w) {
         wall->was = wall->ahead;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(wall, w->clock.time + dt/2, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
         if (demi_pose_sane(&pose)) wall->pose = pose;
-        demi_wall_pose_at(wall, w->clock.time + dt, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
         if (demi_pose_sane(&pose)) wall->ahead = pose;
     }
 }
@@ -26804,6 +26854,7 @@ typedef struct demi_region {
     dem_vec3 lo;                   /* m, lower corner and size of the box of centres */
     double size[3];
     int cylinder;                  /* 1 + axis of the cylinder in it; 0: the whole box */
+    const dem_world *world;
     dem_inside_fn inside;
     void *user;
 } demi_region;
@@ -26832,6 +26883,7 @@ static int demi_region_make(const dem_world *w, const dem_region *from, double o
     }
     to->lo = demi_at(lo);
     to->cylinder = from->cylinder ? 1 + from->cylinder - 'x' : 0;
+    to->world = w;
     to->inside = from->inside;
     to->user = from->user;
     return ok && demi_finite3(from->box.lo) && demi_finite3(from->box.hi);
@@ -26844,7 +26896,10 @@ static int demi_region_keeps(const demi_region *g, const double *u, dem_vec3 x, 
     for (k = 0; k < 3; k++)
         if (g->cylinder && g->cylinder != 1 + k && g->size[k] > 0)
             round += (2*u[k] - 1)*(2*u[k] - 1);
-    return round <= 1 && (!g->inside || g->inside(x, radius, g->user));
+    k = round <= 1;
+    if (k && g->inside)
+        DEMI_USER(g->world, "a fill, feed or selection", 1, k = g->inside(x, radius, g->user) != 0)
+    return k;
 }
 /* Sets *x to the position with relative coordinates u. Returns 0 if it is outside the region. */
 static int demi_region_at(const demi_region *g, const double *u, dem_real radius, dem_vec3 *x) {
@@ -27048,7 +27103,6 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                      uint64_t seed) {
     demi_region g;
     demi_crowd c;
-    demi_calling was;
     int m = 0, first, done;
     if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
     if (radii) radius = radii[0];
@@ -27065,9 +27119,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (radii) demi_region_make(w, region, (double)radii[DEMI_MAX(count, 1) - 1], &g);
     done = demi_crowd_begin(w, &c, &g, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
-    was = demi_calls(w, call, 1);
     if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
-    demi_called(w, was);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, shape)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
@@ -27194,7 +27246,6 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     demi_region room;
     demi_crowd c;
     demi_lattice g;
-    demi_calling was;
     int m = 0, first, done;
     if (demi_null(w, __func__, w, "world") ||
         demi_material_index(w, __func__, material, &m) != DEM_OK) return 0;
@@ -27220,9 +27271,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     }
     done = demi_crowd_begin(w, &c, &room, radius, m, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
-    was = demi_calls(w, __func__, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);
-    demi_called(w, was);
     c.count += DEMI_MAX(done, 0);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
     demi_crowd_end(w);
@@ -27305,7 +27354,6 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
                                   int *count) {
     const demi_periods p = demi_periods_of(w);
     unsigned char *marks;
-    demi_calling was;
     demi_region g;
     int i;
     *count = 0;
@@ -27327,7 +27375,6 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
             w->bodies.slot_index[b.slot - 1] < 0) continue;
         marks[w->bodies.slot_index[b.slot - 1]] = 1;
     }
-    was = demi_calls(w, call, 1);
     for (i = 0; i < w->bodies.count; i++) {
         const dem_real r = w->bodies.pos[4*i + 3];
         marks[i] = marks[i] && demi_in_group(w, s->group, i) &&
@@ -27338,7 +27385,6 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
                                              r));
         *count += marks[i];
     }
-    demi_called(w, was);
     return marks;
 }
 DEM_API int dem_bodies_select(const dem_world *world, const dem_selection *s, dem_body *out,
@@ -28163,15 +28209,14 @@ static void demi_crew_end(dem_world *w) {
    a user-defined motion: its present speed. A table is sampled eight times per row. */
 static double demi_pose_speed(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
-    const double far = (double)DEMI_MAX(wall->extent, wall->radius);
-    dem_vec3 spin;
+    dem_pose p = wall->pose;
     switch (m->kind) {
     case DEM_MOTION_FIXED: return 0;
     case DEM_MOTION_TRANSLATING: case DEM_MOTION_SERVO: return (double)demi_length(m->velocity);
     case DEM_MOTION_ROTATING:
-        spin = demi_scale(demi_unit(m->axis), m->speed);
-        return (double)demi_length(demi_cross(spin, demi_sub(wall->pose.position, m->point))) +
-               (double)demi_length(spin)*far;
+        p.spin = demi_scale(demi_unit(m->axis), m->speed);
+        p.velocity = demi_cross(p.spin, demi_sub(p.position, m->point));
+        return demi_pose_pace(wall, &p);
     case DEM_MOTION_OSCILLATING:
         return (2*DEMI_PI*fabs((double)m->frequency) + (m->ramp > 0 ? 1.5/m->ramp : 0))*
                fabs((double)m->amplitude);
@@ -28179,18 +28224,16 @@ static double demi_pose_speed(const demi_wall *wall) {
         const double end = m->table[m->table_count - 1].time;
         const int looks = 8*m->table_count;
         double most = 0;
-        dem_pose p;
         int k;
         for (k = 0; k <= looks; k++) {
-            demi_wall_pose_at(wall, m->start + end*k/looks, &p);
-            most = DEMI_MAX(most, (double)demi_length(p.velocity) +
-                            (double)demi_length(p.spin)*far);
+            demi_wall_pose_at(0, wall, m->start + end*k/looks, &p);
+            most = DEMI_MAX(most, demi_pose_pace(wall, &p));
         }
         return most;
     }
     default: break;
     }
-    return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
+    return demi_pose_pace(wall, &p);
 }
 /* Returns the largest speed of a wall's surface during its motion, m/s. */
 static double demi_motion_speed(const demi_wall *wall) {
@@ -28580,7 +28623,7 @@ static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_con
     c->who.reals_a = w->bodies.reals + w->bodies.real_count*a;
     c->who.reals_b = b >= 0 ? w->bodies.reals + w->bodies.real_count*b : w->walls[wall].reals;
     c->m_eff = b < 0 ? c->who.mass_a : 1/(1/c->who.mass_a + 1/c->who.mass_b);
-    w->desc.law_rate(c, rates);
+    DEMI_USER(w, "an estimate of the time step", 1, w->desc.law_rate(c, rates))
     press[a].relax += weight*(double)rates[0];
     if (b >= 0) press[b].relax += weight*(double)rates[1];
 }
@@ -29660,7 +29703,8 @@ static dem_result demi_member_grow(dem_world *w) {
         dem_body_state state;
         dem_real rate;
         if (demi_is_ghost(w, i) || dem_body_get(w, id, &state) != DEM_OK) continue;
-        rate = w->desc.growth(&state, id, w->clock.time, w->desc.growth_user);
+        DEMI_USER(w, "a step", 1,
+                  rate = w->desc.growth(&state, id, w->clock.time, w->desc.growth_user))
         radius[i] = r + (dem_real)((double)rate*passed);
         if (rate < 0 || rate > 0 || !demi_finite(rate)) grown |= rate < 0 ? 3 : 1;
         if (demi_size_bad(w, i, radius[i], &mass))
@@ -29852,14 +29896,8 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     demi_tile tile;
     dem_contact c;
     dem_contact_force f;
-    demi_calling was;
     int e;
-    if (w->effects.clustered) {
-        was = demi_look_calls(w, "a read of the contacts");
-        e = demi_members_info(w, d, p, out, gap);
-        demi_look_called(w, was);
-        return e;
-    }
+    if (w->effects.clustered) return demi_members_info(w, d, p, out, gap);
     tile.memory[r.same.at_sliding][0] = 0;      /* demi_law reads it from `memory` */
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
@@ -29874,9 +29912,7 @@ static int demi_springs_info(const dem_world *w, int d, int p, dem_contact_info 
     demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
     demi_who_clear(&c.who);
     demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
-    was = demi_look_calls(w, "a read of the contacts");
     demi_law(w, &c, memory, &f);
-    demi_look_called(w, was);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
     out->normal = demi_row(tile.normal, 0);
     out->overlap = tile.overlap[0];
@@ -29997,6 +30033,76 @@ static int demi_walk_next(const dem_world *w, demi_walk *c) {
         while (c->at < domain->kept) if (demi_walk_look(w, c, c->at++)) return 1;
     }
     return 0;
+}
+
+/* Finds the contact with the largest overlap, relative to the smaller radius: bodies *a and *b, or
+   body *a and *wall, with *b below 0. Returns that overlap, 0 if nothing overlaps. It visits all
+   contacts; demi_overlap knows the value without. */
+static double demi_deepest(const dem_world *w, int *a, int *b, int *wall) {
+    double most = 0;
+    int d, k;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        const demi_kept *kept = demi_kept_of(w, d);
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
+            const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)k;
+            const dem_real p = demi_near_radius(w, at, 0), q = demi_near_radius(w, at, 1);
+            const double deep = (double)((p + q - demi_length(demi_near_way(w, at)))/
+                                         DEMI_MIN(p, q));
+            if (!(deep > most) || (w->joint_count && demi_parted(w, w->near.a[at], w->near.b[at],
+                                                                 -1))) continue;
+            most = deep;
+            *a = w->near.a[at];
+            *b = w->near.b[at];
+        }
+        for (k = 0; k < domain->kept; k++) {
+            if (!((double)kept[k].deep > most) || (w->joint_count && demi_parted(w, kept[k].a,
+                kept[k].b, kept[k].wall))) continue;
+            most = (double)kept[k].deep;
+            *a = kept[k].a;
+            *b = kept[k].b;
+            *wall = kept[k].wall;
+        }
+    }
+    return most;
+}
+/* Returns the largest overlap in the forces just computed, relative to the smaller radius. */
+static double demi_overlap(const dem_world *w) {
+    double overlap = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) overlap = DEMI_MAX(overlap, w->domains[d].overlap);
+    return overlap;
+}
+/* Notes where the overlap is that has just become larger than crushed.next. Each note raises that
+   limit to a value 1.1^n DEMI_OVERLAP_LIMIT, so that the contacts are visited at most 32 times in a
+   run, and the notes of slabs merge to that of the whole world. */
+static void demi_crushed_note(dem_world *w) {
+    demi_crushed *c = &w->booked.crushed;
+    int a = 0, b = 0, wall = 0;
+    if (!(demi_deepest(w, &a, &b, &wall) > 0)) return;
+    if (!(c->next > 0)) c->since = w->clock.time;
+    c->time = w->clock.time;
+    for (c->next = DEMI_OVERLAP_LIMIT; c->next < w->booked.overlap_max;) c->next *= 1.1;
+    c->a = (int32_t)w->bodies.slot[a] + 1;
+    c->b = b < 0 ? 0 : (int32_t)w->bodies.slot[b] + 1;
+    c->wall = b < 0 ? w->walls[wall].id : 0;
+}
+/* Merges the note of a slab into that of the whole world. */
+static void demi_crushed_add(demi_crushed *c, const demi_crushed *part) {
+    const double since = c->next > 0 ? DEMI_MIN(c->since, part->since) : part->since;
+    if (!(part->next > 0)) return;
+    if (part->next > c->next || (!(part->next < c->next) && part->time < c->time)) *c = *part;
+    c->since = since;
+}
+/* Writes since when overlaps have been above the limit and where the largest was, for the report
+   and the progress line; "" if none was above it. Returns `text`. */
+static const char *demi_crushed_text(const dem_world *w, char *text, size_t size) {
+    const demi_crushed *c = &w->booked.crushed;
+    *text = 0;
+    if (c->next > 0)
+        snprintf(text, size, "since t = %.4g s, body %d, %s %d: jammed or too soft", c->since,
+                 (int)c->a, c->b ? "body" : "wall", (int)(c->b ? c->b : c->wall));
+    return text;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -30995,9 +31101,7 @@ static dem_result demi_events_tell(dem_world *w, const char *call) {
     if (e->desc.function) demi_all(w, demi_member_finish);  /* it may look at velocities */
     qsort(e->pending, (size_t)e->n.pending, sizeof *e->pending, demi_event_compare);
     for (i = 0; i < e->n.pending && e->desc.function; i++) {
-        const demi_calling was = demi_calls(w, call, 0);
-        e->desc.function(&e->pending[i], e->desc.user);
-        demi_called(w, was);
+        DEMI_USER(w, call, 0, e->desc.function(&e->pending[i], e->desc.user))
     }
     e->n.pending = 0;
     return DEM_OK;
@@ -31033,7 +31137,6 @@ DEM_API dem_result dem_events_stop(dem_world *w) {
 }
 DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     dem_event *all = 0;
-    demi_calling was;
     int i, n;
     if (demi_null(w, __func__, w, "world") || demi_events_needed(w, __func__) != DEM_OK) return -1;
     n = w->events.n.open;
@@ -31042,9 +31145,7 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     if (!all) { demi_no_memory(w, __func__); return -1; }
     for (i = 0; i < n; i++) all[i] = demi_event_shown(w, i, DEM_EVENT_OPEN);
     qsort(all, (size_t)n, sizeof *all, demi_event_compare);
-    was = demi_calls(w, __func__, 0);
-    for (i = 0; i < n; i++) fn(&all[i], user);
-    demi_called(w, was);
+    for (i = 0; i < n; i++) DEMI_USER(w, __func__, 0, fn(&all[i], user))
     demi_free(w, all);
     return n;
 }
@@ -31456,7 +31557,8 @@ static void demi_domain_fields(dem_world *w, int d) {
         if (demi_is_ghost(w, i) || dem_body_get(w, id, &body) != DEM_OK) continue;
         body.velocity = demi_field_rate(w, w->bodies.vel, w->bodies.half_vel, i);
         body.spin = demi_field_rate(w, w->bodies.spin, w->bodies.half_spin, i);
-        w->desc.body_force(&body, id, demi_field_time(w), &force, &torque, w->desc.force_user);
+        DEMI_USER(w, "a step", 1, w->desc.body_force(&body, id, demi_field_time(w), &force, &torque,
+                                                     w->desc.force_user))
         demi_force_add(w->bodies.force + 4*i, force);
         demi_force_add(w->bodies.torque + 4*i, torque);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
@@ -31487,9 +31589,10 @@ static void demi_domain_clear(dem_world *w, int d) {
     for (i = domain->begin; i < domain->end && w->desc.force; i++) {
         if (demi_is_ghost(w, i)) continue;
         const dem_vec3 v = demi_field_rate(w, w->bodies.vel, w->bodies.half_vel, i);
-        const dem_vec3 f = w->desc.force(demi_at(w->bodies.pos + 4*i), v, w->bodies.pos[4*i + 3],
-                                         w->bodies.mass[i], demi_field_time(w),
-                                         w->desc.force_user);
+        dem_vec3 f;
+        DEMI_USER(w, "a step", 1, f = w->desc.force(demi_at(w->bodies.pos + 4*i), v,
+                                                    w->bodies.pos[4*i + 3], w->bodies.mass[i],
+                                                    demi_field_time(w), w->desc.force_user))
         demi_put(w->bodies.force + 4*i, f);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, v)*(double)w->clock.dt;
@@ -31603,44 +31706,19 @@ static int demi_forces(dem_world *w) {
         if (!demi_response_is(w, DEMI_MIDWAY)) demi_loads_add(c, f, power, dt);
     }
     if (demi_exchanges(w)) demi_walls_rates(w);
-    for (d = 0; d < w->domain_count; d++)
-        w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, w->domains[d].overlap);
+    w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, demi_overlap(w));
+    if (w->booked.overlap_max > DEMI_MAX(w->booked.crushed.next, DEMI_OVERLAP_LIMIT))
+        demi_crushed_note(w);
     if (w->material_count == 1 && w->booked.overlap_max > 0) w->booked.met[0] = 1;
     response->book(w);
     return 1;
 }
 
-/* Finds the two bodies with the largest overlap, relative to the smaller radius. Returns that
-   overlap; 0 and no bodies if none overlap. */
-static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
-    double most = 0;
-    int d, k;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        const demi_kept *kept = demi_kept_of(w, d);
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
-            const int at = d*w->near.stride + k, a = w->near.a[at], b = w->near.b[at];
-            const dem_real p = demi_near_radius(w, (size_t)at, 0);
-            const dem_real q = demi_near_radius(w, (size_t)at, 1);
-            const dem_real way = demi_length(demi_near_way(w, (size_t)at));
-            const double deep = (double)((p + q - way)/DEMI_MIN(p, q));
-            if (deep > most) { most = deep; *first = a; *second = b; }
-        }
-        for (k = 0; k < domain->kept; k++)
-            if (kept[k].b >= 0 && (double)kept[k].deep > most) {
-                most = (double)kept[k].deep;
-                *first = kept[k].a;
-                *second = kept[k].b;
-            }
-    }
-    return most;
-}
-
 /* Fails with a message that names the body at fault, and the likely cause. Tested in this order:
-   numbers that are not finite, an overlap with a wall or between bodies of at least the radius, and
-   otherwise the body with the largest speed or acceleration. */
+   numbers that are not finite, an overlap of at least the radius, and otherwise the body with the
+   largest speed or acceleration. */
 static dem_result demi_unstable(dem_world *w) {
-    int i, d, first = 0, second = 0;
+    int i, d, first = 0, second = 0, wall = 0;
     double deepest;
     for (i = 0; i < w->bodies.count; i++)
         if (!demi_finite3(demi_at(w->bodies.pos + 4*i)) ||
@@ -31669,18 +31747,7 @@ static dem_result demi_unstable(dem_world *w) {
                              (double)w->bodies.reals[i], (double)w->bodies.rates[i],
                              (double)w->clock.dt);
     }
-    for (d = 0; d < w->domain_count; d++)
-        for (i = 0; i < w->domains[d].kept; i++) {
-            const demi_kept *c = demi_kept_of(w, d) + i;
-            if (c->b < 0 && c->deep >= 1)
-                return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
-                                 "overlaps wall %d by %.3g of its radius, must be below 1; it "
-                                 "started inside the wall, hit it too fast for dt = %g s, or the "
-                                 "material is too soft", (unsigned long long)w->clock.steps,
-                                 (unsigned)w->bodies.slot[c->a] + 1, (int)w->walls[c->wall].id,
-                                 (double)c->deep, (double)w->clock.dt);
-        }
-    deepest = demi_deepest_pair(w, &first, &second);
+    deepest = demi_deepest(w, &first, &second, &wall);
     if (!(deepest >= 1)) {
         double most = 0;
         for (i = 0; i < w->bodies.count; i++)
@@ -31696,6 +31763,13 @@ static dem_result demi_unstable(dem_world *w) {
                          (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[first] + 1,
                          (double)w->clock.dt);
     }
+    if (second < 0)
+        return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
+                         "overlaps wall %d by %.3g of its radius, must be below 1; it "
+                         "started inside the wall, hit it too fast for dt = %g s, or the "
+                         "material is too soft", (unsigned long long)w->clock.steps,
+                         (unsigned)w->bodies.slot[first] + 1, (int)w->walls[wall].id, deepest,
+                         (double)w->clock.dt);
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: bodies %u and %u overlap "
                      "by %.3g of the smaller radius, must be below 1; they started inside each "
                      "other, collided too fast for dt = %g s, or the material is too soft",
@@ -31780,9 +31854,9 @@ static dem_result demi_step_move(dem_world *w) {
         dem_pose pose = wall->pose, mid = wall->mid;
         double speed;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(wall, w->clock.time, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time, &pose);
         if (!demi_response_is(w, DEMI_MIDWAY))
-            demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &mid);
+            demi_wall_pose_at(w, wall, w->clock.time - w->clock.half_kick, &mid);
         if (!demi_pose_sane(&pose) || !demi_pose_sane(&mid)) {
             w->stage.forces_valid = 0;          /* the wall stays where it was, finite */
             w->margin.walls_gone = 1e300;
@@ -31803,14 +31877,6 @@ static dem_result demi_step_move(dem_world *w) {
     return DEM_OK;
 }
 
-/* Returns the largest overlap in the forces just computed, relative to the smaller radius. */
-static double demi_overlap(const dem_world *w) {
-    double overlap = 0;
-    int d;
-    for (d = 0; d < w->domain_count; d++) overlap = DEMI_MAX(overlap, w->domains[d].overlap);
-    return overlap;
-}
-
 /* Integrates the user-defined numbers of work group d over the step: by body_reals_fn, or by the
    explicit Euler scheme. */
 static void demi_domain_gain(dem_world *w, int d) {
@@ -31825,8 +31891,9 @@ static void demi_domain_gain(dem_world *w, int d) {
         if (demi_is_ghost(w, i)) continue;
         if (!w->desc.body_reals_fn) for (k = 0; k < n; k++) reals[k] += rates[k]*dt;
         else if (dem_body_get(w, id, &body) == DEM_OK)
-            w->desc.body_reals_fn(reals, rates, &body, id, w->clock.time, dt,
-                                  w->desc.body_reals_user);
+            DEMI_USER(w, "a step", 1,
+                      w->desc.body_reals_fn(reals, rates, &body, id, w->clock.time, dt,
+                                            w->desc.body_reals_user))
     }
 }
 /* Integrates the user-defined numbers of bodies, and what walls have gained of them, over the step.
@@ -32022,8 +32089,22 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && h->events.n.on) demi_events_take(h);
     return result;
 }
-/* The part of a step after its move: 2 search, 3 to 5 forces. With impulses,
-   desc.unsolved_stops makes a step fail whose solver did not reach its tolerance. */
+/* Fails after a step with an overlap above desc.overlap_stop. */
+static dem_result demi_member_crushed(dem_world *w) {
+    const double overlap = demi_overlap(w);
+    int a = 0, b = 0, wall = 0;
+    if (!(overlap > (double)w->desc.overlap_stop)) return DEM_OK;
+    demi_deepest(w, &a, &b, &wall);
+    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: step %llu: body %u overlaps %s %u by "
+                     "%.3g R, must be at most desc.overlap_stop = %g R; grains are jammed or too "
+                     "soft: take a higher modulus, more room or lower speeds, or go on with "
+                     "desc.overlap_stop = 0", (unsigned long long)w->clock.steps,
+                     (unsigned)w->bodies.slot[a] + 1, b < 0 ? "wall" : "body",
+                     b < 0 ? (unsigned)w->walls[wall].id : (unsigned)w->bodies.slot[b] + 1,
+                     overlap, (double)w->desc.overlap_stop);
+}
+/* The part of a step after its move: 2 search, 3 to 5 forces. desc.overlap_stop and, with impulses,
+   desc.unsolved_stops make a step fail that is complete; all members then agree that it is. */
 static dem_result demi_step_answer(dem_world *h) {
     const uint64_t unsolved = h->booked.unsolved;
     const int search = demi_list_due(h);
@@ -32036,6 +32117,8 @@ static dem_result demi_step_answer(dem_world *h) {
     if (result == DEM_OK) result = demi_all(h, demi_member_end);
     if (result != DEM_OK) return result;
     h->stage.moved = 0;
+    if (demi_member(h, 0)->desc.overlap_stop > 0) result = demi_all_agree(h, demi_member_crushed);
+    if (result != DEM_OK) return result;
     if (!h->desc.unsolved_stops || h->booked.unsolved == unsolved) return DEM_OK;
     return demi_fail(h, DEM_ERROR_STOPPED, "dem_world_step: step %llu: %d sweeps left %.3g m/s, "
                      "more than the tolerance; %d of %d contacts are at their friction limit, %s; "
@@ -32207,9 +32290,9 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
 static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn progress,
                                 void *user, double done, double since) {
     const double left = (demi_clock() - since)*(1 - done)/DEMI_MAX(done, 1e-9);
-    const demi_calling was = demi_calls(w, call, 0);
-    const int stop = progress && progress(w, done, done < 1 ? left : 0, user) && done < 1;
-    demi_called(w, was);
+    int stop = 0;
+    if (progress)
+        DEMI_USER(w, call, 0, stop = progress(w, done, done < 1 ? left : 0, user) && done < 1)
     return stop ? demi_fail(w, DEM_ERROR_STOPPED, "%s: stopped by the progress function at %g s",
                             call, w->clock.time) : DEM_OK;
 }
@@ -32376,12 +32459,15 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     if (demi_null_look(w, __func__, user, "user")) return 0;
     FILE *out = (FILE *)user;
     const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
+    char crushed[128];
     if (line && tenths <= w->look.tenths_told) return 0;
     ((dem_world *)w)->look.tenths_told = tenths;
     fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
             100*done, w->clock.time, w->bodies.count, seconds_left);
     if (w->booked.unsolved)
         fprintf(out, "%llu steps above the tolerance   ", (unsigned long long)w->booked.unsolved);
+    if (*demi_crushed_text(w, crushed, sizeof crushed))
+        fprintf(out, "overlap %.2g R %s   ", w->booked.overlap_max, crushed);
     if (line || done >= 1) fputc('\n', out);
     fflush(out);
     return 0;
@@ -32439,6 +32525,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
 DEM_API void dem_overlap_max_reset(dem_world *w) {
     if (demi_null(w, __func__, w, "world")) return;
     w->booked.overlap_max = 0;
+    memset(&w->booked.crushed, 0, sizeof w->booked.crushed);
 }
 
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
@@ -32477,23 +32564,20 @@ static int demi_contacts_visit(dem_world *w, const char *call, dem_contact_fn fn
     demi_walk c = demi_walk_begin();
     dem_real memory[DEMI_MEMORY];
     int e, n = 0, changed = 0;
-    demi_calling was_calling;
     if (demi_contacts_settle(w, call) != DEM_OK) return -1;
-    was_calling = demi_calls(w, call, 0);
     for (; demi_walk_next(w, &c); n++) {
         const int keep = c.own ? DEMI_MEMORY : w->memory_stride;
         const size_t step = c.own ? 1 : (size_t)w->near.stride;
         dem_real *row = c.own ? c.own->memory : !keep ? memory
             : w->near.memory + (size_t)c.d*(size_t)keep*step + c.entry;
         for (e = 0; e < keep; e++) memory[e] = row[(size_t)e*step];
-        fn(&c.info, memory, user);
+        DEMI_USER(w, call, 0, fn(&c.info, memory, user))
         for (e = 0; e < keep; e++) {
             dem_real *now = row + (size_t)e*step;
             changed |= memory[e] < *now || memory[e] > *now;
             *now = memory[e];
         }
     }
-    demi_called(w, was_calling);
     if (changed) demi_scene_changed(w);
     return n;
 }
@@ -32507,7 +32591,7 @@ typedef struct demi_bonds { dem_contact_fn make; void *user; dem_real gap; int c
 static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
     demi_bonds *b = (demi_bonds *)user;
     if (c->wall || !(c->overlap > -b->gap)) return;
-    b->make(c, memory, b->user);
+    DEMI_USER_WITHIN(b->make(c, memory, b->user));
     b->count++;
 }
 DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void *user) {
@@ -32538,20 +32622,22 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
 static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real *memory,
                                  size_t stride, int flip, int *any) {
     const demi_laws *laws = &w->laws;
-    int i, friction = 1, rolling = 1, sticks = 1;
+    demi_rubbing rub = {1, 1, 1, 1};
+    int i;
     *any = 0;
-    if (w->memory_stride) demi_pairs_rub(w, &friction, &rolling, &sticks);
+    if (w->memory_stride) rub = demi_pairs_rub(w);
     for (i = 0; i < demi_memory_told(w); i++) {
         dem_real m = memory[(size_t)i*stride];
         int number = i;
         if (demi_response_is(w, DEMI_LAWS) && i == laws->at_sliding) {
-            if (!sticks) continue;
+            if (!rub.sticks) continue;
             number = 24;
         } else if (demi_laws_keep(w) && i == laws->at_twisting) {
-            if (!demi_pairs_twist(w)) continue;
+            if (!rub.twisting) continue;
             number = 25;
         } else if (demi_laws_keep(w)) {
-            if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
+            if (i < laws->at_rolling ? !rub.friction : i < laws->at_normal && !rub.rolling)
+                continue;
             if (i >= laws->at_normal) number = 16 + i - laws->at_normal;
             else if (i >= laws->at_rolling) number = 8 + i - laws->at_rolling;
         }
@@ -36327,13 +36413,17 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
                      "exists, may be written to and has room", call, path,
                      cause ? strerror(cause) : "unknown cause");
 }
+/* Prints a number as the cell of a table, with nothing if there is none: it is not finite. */
+static const char *demi_format_cell(char *buffer, double value) {
+    return demi_finite_double(value) ? demi_format_real(buffer, value, 9) : "";
+}
 /* Writes the time (s) and `count` values to `line`, of DEMI_CSV_LINE bytes, without a line end. */
 static void demi_csv_line(char *line, double time, const double *value, int count) {
     char number[32];
     int i, n = snprintf(line, DEMI_CSV_LINE, "%s", demi_format_real(number, time, 12));
     for (i = 0; i < count; i++)
         n += snprintf(line + n, (size_t)(DEMI_CSV_LINE - n), ",%s",
-                      demi_format_real(number, value[i], 9));
+                      demi_format_cell(number, value[i]));
 }
 static const char demi_loads_heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts";
 enum { DEMI_LOADS = 9 };
@@ -36374,7 +36464,7 @@ static void demi_table_put(demi_out *o, int first, const double *value, int coun
     char text[32];
     int k;
     for (k = 0; k < count; k++)
-        fprintf(o->file, "%s%s", first && !k ? "" : ",", demi_format_real(text, value[k], 9));
+        fprintf(o->file, "%s%s", first && !k ? "" : ",", demi_format_cell(text, value[k]));
 }
 static void demi_table_vec(demi_out *o, dem_vec3 v) {
     const double value[3] = {(double)v.x, (double)v.y, (double)v.z};
@@ -36674,7 +36764,7 @@ DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, 
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 23 };
+enum { DEMI_CHECKPOINT_VERSION = 24 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -37318,6 +37408,7 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
 static dem_world *demi_twin_make(dem_world *w) {
     dem_world *t = (dem_world *)demi_alloc(w, 1, sizeof *t);
     if (!t) return 0;
+    t->look.of = w->look.of ? w->look.of : w;
     t->desc = w->desc;
     t->asked = w->asked;
     demi_names_own(t, &w->asked);
@@ -38401,11 +38492,8 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
         result = demi_mixing_values(w, &d->mixing, value);
     } else {
         count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
-        if (d->values) {
-            const demi_calling was = demi_calls(w, "an output of values", 0);
-            d->values(w, value, d->user);
-            demi_called(w, was);
-        } else {
+        if (d->values) DEMI_USER(w, "an output of values", 0, d->values(w, value, d->user))
+        else {
             const dem_counters c = dem_counters_get(w);
             const dem_totals t = dem_totals_get(w);
             value[0] = (double)c.steps;
@@ -38456,11 +38544,11 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     char digits[24], *path;
     dem_result result = DEM_OK;
     if (d->kind == DEM_OUTPUT_CALL) {
-        w->look.under_way++;
-        if (d->function(w, number, d->user))
+        int stop;
+        DEMI_USER_FREE(w, stop = d->function(w, number, d->user))
+        if (stop)
             result = demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: stopped by the function of "
                                "an output at %g s", w->clock.time);
-        w->look.under_way--;
         return result;
     }
     path = (char *)demi_alloc(w, length + sizeof digits, 1);
@@ -38714,7 +38802,7 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
                       "are in kg/m3 (water has 1000), was %g g/cm3 meant?", i + 1,
                       (double)m->density, (double)(m->density < 10 ? m->density : m->density/1000));
-        if (!w->desc.law && !(m->stiffness > 0) &&
+        if (demi_response_is(w, DEMI_LASTING) && !w->desc.law && !(m->stiffness > 0) &&
             (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: "
                       "moduli are in Pa (glass has 7e10, softened grains 1e6 to 1e8)", i + 1,
@@ -38729,6 +38817,11 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_WARNING,
                       "material %d has a rolling friction of %g: it is a fraction of the "
                       "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
+        if (w->desc.law && (m->rolling_friction > 0 ||
+            w->pairs[i*DEMI_MATERIALS + i].given.spinning_friction > 0))
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling or spinning friction, but "
+                      "desc.law decides whether it acts, and the laws shipped in examples/laws "
+                      "ignore it: call dem_law_roll_epsd or dem_law_twist in your law", i + 1);
         if (m->rolling_friction > 0 && !(m->friction > 0))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
                       "friction: its grains slide instead of rolling", i + 1);
@@ -38849,15 +38942,15 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
 /* Compares the velocity and spin that a user-defined motion gives at a time with the differences of
    its poses over d s. Returns 1 and fills the two vectors if they differ by more than 1 % and
    round-off. Of an infinite plane only the velocity along its normal counts. */
-static int demi_motion_differs(const demi_wall *wall, double time, double d, dem_vec3 *given,
-                               dem_vec3 *found) {
+static int demi_motion_differs(const dem_world *w, const demi_wall *wall, double time,
+                               double d, dem_vec3 *given, dem_vec3 *found) {
     const dem_real digit = DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(2e-15), per = (dem_real)(1/d);
     dem_pose p[3];
     dem_vec3 v[2][2];
     dem_real W[9];
     int i, j, k;
     for (k = 0; k < 3; k++) {
-        demi_wall_pose_at(wall, time + k*d/2, &p[k]);
+        demi_wall_pose_at(w, wall, time + k*d/2, &p[k]);
         if (!demi_pose_sane(&p[k])) return 0;
     }
     for (i = 0; i < 3; i++)                     /* dR/dt R^T */
@@ -38883,7 +38976,6 @@ static int demi_motion_differs(const demi_wall *wall, double time, double d, dem
 }
 /* Checks user-defined motions now and at later times, up to a million steps from now. */
 static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings *f) {
-    const demi_calling was = demi_calls(w, "dem_world_check", 1);
     const double d = w->clock.dt > 0 ? (double)w->clock.dt : w->desc.dt > 0 ? (double)w->desc.dt
         : a->dt_max > 0 ? (double)a->dt_max/2 : 1e-6;
     int i, k, differs;
@@ -38893,7 +38985,7 @@ static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings 
         dem_vec3 v = {0, 0, 0}, u = {0, 0, 0};
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_USER) continue;
         for (k = differs = 0; k < 8 && !differs; k++, after = after > 0 ? 10*after : d)
-            differs = demi_motion_differs(wall, w->clock.time + after, d, &v, &u);
+            differs = demi_motion_differs(w, wall, w->clock.time + after, d, &v, &u);
         if (!differs) continue;
         demi_find(f, DEM_SEVERITY_WARNING, "the motion of wall %d gives a %s of (%g, %g, %g) where "
                   "its %s changes by (%g, %g, %g) per second: contacts would create energy; give "
@@ -38901,7 +38993,6 @@ static void demi_check_motions(dem_world *w, const dem_advice *a, demi_findings 
                   differs == 1 ? "velocity" : "spin", (double)v.x, (double)v.y, (double)v.z,
                   differs == 1 ? "position" : "rotation", (double)u.x, (double)u.y, (double)u.z);
     }
-    demi_called(w, was);
 }
 
 /* True if the whole of a finite wall is behind some plane or beyond an outflow face of the domain,
@@ -39330,9 +39421,10 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
 /* Estimates overlaps, divided by the radius, between two of the smallest grains of each material:
    in an impact at the speed a->speed, and under the weight of all grains. The weight is that of a
    bed that covers the area of the scene normal to gravity; each grain bears the weight on (2 r)^2
-   of that area (not in planar worlds). Reports what exceeds 0.05, with the modulus that would keep
-   it below 0.01: an overlap follows from the modulus to the power -2/5 (impact) or -2/3 (weight)
-   for Hertz's law, and -1/2 or -1 for linear springs. */
+   of that area (not in planar worlds). Warns of what exceeds DEMI_OVERLAP_LIMIT, with the modulus
+   that would keep it below: an overlap follows from the modulus to the power -2/5 (impact) or -2/3
+   (weight) for Hertz's law, and from a given stiffness to the power -1/2 or -1. A stiffness that
+   follows from a modulus is in proportion to its power 4/5. */
 static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_findings *f) {
     const double g = (double)demi_length(w->desc.gravity), v = (double)a->speed;
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
@@ -39364,16 +39456,19 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
         deep[0] = hertz ? demi_pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
         deep[1] = (hertz ? demi_pow(force/kn, 2.0/3) : force/kn)/r;
         for (k = 0; k < 2; k++) {
-            const double more = demi_pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
-            if (!(deep[k] > 0.05)) continue;
-            demi_find(f, deep[k] > 0.3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "grains of "
-                      "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s; "
-                      "%s of %.2g %s would keep it below 0.01", i + 1, r, deep[k],
+            const int given = w->materials[i].stiffness > 0;
+            /* 1.05: so that the rounded value suffices, too */
+            const double more = 1.05*demi_pow(deep[k]/DEMI_OVERLAP_LIMIT,
+                                         k ? (hertz ? 1.5 : given ? 1 : 1.25)
+                                           : hertz || !given ? 2.5 : 2);
+            if (!(deep[k] > DEMI_OVERLAP_LIMIT)) continue;
+            demi_find(f, DEM_SEVERITY_WARNING, "grains of material %d (radius %g m) will overlap "
+                      "by %.2g of their radius %s%.3g %s; %s of %.2g %s would keep it below %g",
+                      i + 1, r, deep[k],
                       k ? "under a weight of " : "at ", k ? force : v, k ? "N each" : "m/s",
-                      w->materials[i].stiffness > 0 ? "a stiffness" : "a Young's modulus",
-                      more*(double)(w->materials[i].stiffness > 0 ? w->materials[i].stiffness
-                                                                  : w->materials[i].young),
-                      w->materials[i].stiffness > 0 ? "N/m" : "Pa");
+                      given ? "a stiffness" : "a Young's modulus",
+                      more*(double)(given ? w->materials[i].stiffness : w->materials[i].young),
+                      given ? "N/m" : "Pa", DEMI_OVERLAP_LIMIT);
         }
     }
 }
@@ -39481,9 +39576,8 @@ static int demi_try_normal(const dem_world *w) {
 /* Returns the tangential law to try instead of the one in force, or -1 if none fits or no pair has
    friction. A spring replaces any other law; with Hertz's law, [THO13] replaces a spring. */
 static int demi_try_tangent(const dem_world *w) {
-    int friction, rolling, sticks;
-    demi_pairs_rub(w, &friction, &rolling, &sticks);
-    if (w->desc.law || !friction || demi_tangent_meant(w) == DEM_TANGENT_NONE) return -1;
+    if (w->desc.law || !demi_pairs_rub(w).friction ||
+        demi_tangent_meant(w) == DEM_TANGENT_NONE) return -1;
     if (demi_tangent_meant(w) != DEM_TANGENT_SPRING) return DEM_TANGENT_SPRING;
     return demi_normal_is(w, DEMI_HERTZIAN) ? DEM_TANGENT_MINDLIN_RESCALED : -1;
 }
@@ -39567,7 +39661,8 @@ static dem_result demi_try_run(dem_world *t, const dem_trials *all, double *sum)
         result = dem_world_run(t, all->duration/2/(k ? (int)DEMI_TRY_SAMPLES : 1), 0, 0);
         for (e = 0; e < all->observable_count && k && result == DEM_OK; e++) {
             const dem_observable *o = &all->observables[e];
-            const double value = o->function(t, o->user);
+            double value;
+            DEMI_USER(t, "dem_trials_run", 1, value = o->function(t, o->user))
             sum[e] += value/(int)DEMI_TRY_SAMPLES;
             if (!demi_finite_double(value))
                 result = demi_fail(t, DEM_ERROR_UNSTABLE, "%s is not finite", o->name);
@@ -39770,7 +39865,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
     char *state;
     size_t size;
     dem_result result;
-    int k;
+    int k, stop = 0;
     if (demi_null(w, __func__, d, "desc") || demi_null(w, __func__, out, "trials"))
         return DEM_ERROR_ARGUMENT;
     if (demi_unbuilt(w, __func__) != DEM_OK || demi_trials_check(w, d) != DEM_OK)
@@ -39798,9 +39893,11 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
         trial->step = rows[k]->step;
         trial->stiffness = rows[k]->stiffness;
         result = demi_trial_run(w, state, size, rows[k], out, trial);
-        if (result == DEM_OK && d->progress &&
-            d->progress(w, (k + 1.0)/out->count,
-                        (demi_clock() - begun)*(out->count - k - 1)/(k + 1), d->user))
+        if (result == DEM_OK && d->progress)
+            DEMI_USER(w, __func__, 1, stop = d->progress(
+                w, (k + 1.0)/out->count, (demi_clock() - begun)*(out->count - k - 1)/(k + 1),
+                d->user))
+        if (result == DEM_OK && stop)
             result = demi_fail(w, DEM_ERROR_STOPPED, "dem_trials_run: stopped by the progress "
                                "function after %d of %d trials", k + 1, out->count);
     }
@@ -39955,11 +40052,14 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
         dem_body_state body;
         if (!(w->bodies.inv_mass[i] > 0) || dem_body_get(w, id, &body) != DEM_OK) continue;
         if (w->desc.body_force)
-            w->desc.body_force(&body, id, w->clock.time, &force, &torque, w->desc.force_user);
+            DEMI_USER(w, "a report of effects", 1,
+                      w->desc.body_force(&body, id, w->clock.time, &force, &torque,
+                                         w->desc.force_user))
         if (w->desc.force)
-            force = demi_add(force, w->desc.force(body.position, body.velocity,
-                                                  w->bodies.pos[4*i + 3], w->bodies.mass[i],
-                                                  w->clock.time, w->desc.force_user));
+            DEMI_USER(w, "a report of effects", 1,
+                      force = demi_add(force, w->desc.force(
+                          body.position, body.velocity, w->bodies.pos[4*i + 3],
+                          w->bodies.mass[i], w->clock.time, w->desc.force_user)))
         pushed += demi_dot(force, force) > 0 || demi_dot(torque, torque) > 0;
     }
     return demi_say(e, pushed, "acts on %d of %d bodies now", pushed, w->bodies.count);
@@ -39974,7 +40074,8 @@ static dem_effect_state demi_look_growth(const dem_world *w, dem_effect *e) {
         dem_body_state body;
         dem_real rate;
         if (dem_body_get(w, id, &body) != DEM_OK) continue;
-        rate = w->desc.growth(&body, id, w->clock.time, w->desc.growth_user);
+        DEMI_USER(w, "a report of effects", 1,
+                  rate = w->desc.growth(&body, id, w->clock.time, w->desc.growth_user))
         moving += rate < 0 || rate > 0;
     }
     return demi_say(e, moving, "the radii of %d of %d bodies change now", moving, w->bodies.count);
@@ -40189,17 +40290,19 @@ static void demi_law_again(const dem_contact *c, dem_real *memory, dem_contact_f
             twin.who.rate_a = rates;
             twin.who.rate_b = rates + DEM_BODY_REALS;
         }
-        own->desc.law(&twin, spare, &other);
+        DEMI_USER_WITHIN(own->desc.law(&twin, spare, &other));
     }
-    own->desc.law(&mine, memory, f);
+    DEMI_USER_WITHIN(own->desc.law(&mine, memory, f));
 }
 static dem_vec3 demi_force_again(dem_vec3 position, dem_vec3 velocity, dem_real radius,
                                  dem_real mass, double time, void *user) {
     const demi_again *own = (const demi_again *)user;
     int i;
     for (i = 1; i < own->times; i++)
-        own->desc.force(position, velocity, radius, mass, time, own->desc.force_user);
-    return own->desc.force(position, velocity, radius, mass, time, own->desc.force_user);
+        DEMI_USER_WITHIN(own->desc.force(position, velocity, radius, mass, time,
+                                         own->desc.force_user));
+    return DEMI_USER_WITHIN(own->desc.force(position, velocity, radius, mass, time,
+                                            own->desc.force_user));
 }
 static void demi_body_force_again(const dem_body_state *body, dem_body id, double time,
                                   dem_vec3 *force, dem_vec3 *torque, void *user) {
@@ -40207,9 +40310,9 @@ static void demi_body_force_again(const dem_body_state *body, dem_body id, doubl
     int i;
     for (i = 1; i < own->times; i++) {
         dem_vec3 f = *force, t = *torque;
-        own->desc.body_force(body, id, time, &f, &t, own->desc.force_user);
+        DEMI_USER_WITHIN(own->desc.body_force(body, id, time, &f, &t, own->desc.force_user));
     }
-    own->desc.body_force(body, id, time, force, torque, own->desc.force_user);
+    DEMI_USER_WITHIN(own->desc.body_force(body, id, time, force, torque, own->desc.force_user));
 }
 static void demi_again_law(dem_world *t, demi_again *own) {
     t->desc.law = demi_law_again;
@@ -40493,7 +40596,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     dem_world *w;
     if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
         *dem_world_create_error_get(desc)) return 0;
-    w = (dem_world *)demi_raw_alloc(&desc->allocator, sizeof *w);
+    w = (dem_world *)demi_raw_alloc(0, &desc->allocator, sizeof *w);
     if (!w) return 0;
     memset(w, 0, sizeof *w);
     w->desc = w->asked = *desc;
@@ -40532,9 +40635,10 @@ DEM_API void dem_world_destroy(dem_world *w) {
                     "the run, then destroy the world");
         return;
     }
+    demi_calls(w, __func__, 1);                 /* the allocator sees an incomplete world */
     for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
     allocator = w->desc.allocator;
-    demi_raw_free(&allocator, w, sizeof *w);
+    demi_raw_free(0, &allocator, w, sizeof *w);
 }
 
 DEM_API const char *dem_world_error_get(const dem_world *w) {
@@ -40559,9 +40663,9 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
         fprintf(out, "\n");
     }
     if (w->levels.tests[0] > 0)
-        fprintf(out, "           %s: about %.3g tests per body and search with levels, %.3g with "
-                "one grid\n", auto_ ? "chosen" : "levels or one grid", w->levels.tests[1],
-                w->levels.tests[0]);
+        fprintf(out, "           %s: %s; distance tests per body and search, estimated: %.3g with "
+                "levels, %.3g with one grid\n", auto_ ? "chosen" : "set",
+                demi_searches[w->desc.search].name, w->levels.tests[1], w->levels.tests[0]);
 }
 
 /* Returns the number of persistent contacts. */
@@ -40707,9 +40811,13 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     }
     for (i = 0; i < w->outlet_count; i++) {
         const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
-        fprintf(out, "outlet %-3d %llu grains, %.6g kg%s, of them wanted %llu, %.6g kg\n", i + 1,
-                (unsigned long long)o->total, o->total_mass, demi_outlet_at(w, i)->zone < 0 ? ""
-                : " came in and stayed", (unsigned long long)o->sorted, o->sorted_mass);
+        const dem_outlet_desc *of = &demi_outlet_at(w, i)->desc;
+        fprintf(out, "outlet %-3d %llu grains, %.6g kg%s", i + 1, (unsigned long long)o->total,
+                o->total_mass, demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed");
+        if (of->wanted_min > 0 || of->wanted_max > 0)
+            fprintf(out, ", of them wanted %llu, %.6g kg", (unsigned long long)o->sorted,
+                    o->sorted_mass);
+        fputc('\n', out);
     }
 }
 /* Prints the account of energy. A large residual means that the time step is too large. */
@@ -40721,7 +40829,7 @@ static void demi_ledger_report(const dem_world *w, FILE *out) {
             l.gravity, l.walls, l.force, l.inserted, l.removed, l.kinetic, l.rotational, l.elastic,
             l.normal, l.slide, l.tangent, l.rolling);
     if (l.growth < 0 || l.growth > 0)
-        fprintf(out, "           in by bodies that change their radius: %.6g\n", l.growth);
+        fprintf(out, "           in by growing radii and changes of the scene: %.6g\n", l.growth);
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0))
         fprintf(out, "           unknown to the ledger: %.3g J of your law, which does not set "
                 "force->energy\n", l.unknown);
@@ -40743,7 +40851,7 @@ static void demi_report(const dem_world *world, FILE *out) {
     dem_world look = *world, *w = &look;        /* computes missing effects in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
-    char few[48] = "";
+    char few[48] = "", crushed[128];
     dem_advice a;
     int i, walls = 0;
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
@@ -40786,9 +40894,9 @@ static void demi_report(const dem_world *world, FILE *out) {
             w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
             demi_kernel_choose(w));
     demi_idle_report(w, out);
-    fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->booked.overlap_max,
-            w->booked.overlap_max > 0.05 ? "  (above 0.05: use a stiffer material or lower speeds)"
-                : "");
+    fprintf(out, "overlap    %.3g of the radius at most so far%s%s\n", w->booked.overlap_max,
+            w->booked.crushed.next > 0 ? ", above 0.05 " : "",
+            demi_crushed_text(w, crushed, sizeof crushed));
     dem_pairs_print(w, out);
     demi_flows_report(w, out);
     if (w->desc.ledger) demi_ledger_report(w, out);
@@ -40796,9 +40904,9 @@ static void demi_report(const dem_world *world, FILE *out) {
 DEM_API void dem_world_report(const dem_world *w, FILE *out) {
     demi_calling was;
     if (demi_null_look(w, __func__, out, "out")) return;
-    was = demi_look_calls(w, __func__);
+    was = demi_calls(w, __func__, 1);
     demi_report(w, out);
-    demi_look_called(w, was);
+    demi_called(w, was);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -41132,7 +41240,8 @@ static dem_result demi_slabs_transport_failed(dem_slabs *s, const char *what, in
 static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int sum) {
     int answer;
     if (s->local == s->count) return DEM_OK;
-    answer = s->desc.transport.reduce_fn(values, count, sum, s->desc.transport.user);
+    DEMI_USER(&s->head, "dem_slabs_step", 1, answer = s->desc.transport.reduce_fn(
+        values, count, sum, s->desc.transport.user))
     return answer ? demi_slabs_transport_failed(s, "reduce_fn", answer) : DEM_OK;
 }
 
@@ -41216,7 +41325,8 @@ static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
         if (ways & DEMI_DOWN) get[1] = top->in[1].size;
         if (ways & DEMI_UP) get[0] = low->in[0].size;
     } else {
-        answer = t->exchange_fn(&send[0], 8, &get[0], 8, &send[1], 8, &get[1], 8, t->user);
+        DEMI_USER(&s->head, "dem_slabs_step", 1, answer = t->exchange_fn(
+            &send[0], 8, &get[0], 8, &send[1], 8, &get[1], 8, t->user))
         if (answer) return demi_slabs_transport_failed(s, "exchange_fn", answer);
         if (!DEMI_GROW(low->world, low->in[0].bytes, (size_t)get[0]) ||
             !DEMI_GROW(top->world, top->in[1].bytes, (size_t)get[1]))
@@ -41226,10 +41336,9 @@ static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
         low->in[0].size = (size_t)get[0];
         top->in[1].size = (size_t)get[1];
     }
-    answer = t->exchange_fn(low->out[0].bytes, (size_t)send[0],
-                            low->in[0].bytes, (size_t)get[0],
-                            top->out[1].bytes, (size_t)send[1],
-                            top->in[1].bytes, (size_t)get[1], t->user);
+    DEMI_USER(&s->head, "dem_slabs_step", 1, answer = t->exchange_fn(
+        low->out[0].bytes, (size_t)send[0], low->in[0].bytes, (size_t)get[0],
+        top->out[1].bytes, (size_t)send[1], top->in[1].bytes, (size_t)get[1], t->user))
     return answer ? demi_slabs_transport_failed(s, "exchange_fn", answer) : DEM_OK;
 }
 
@@ -41855,7 +41964,7 @@ static void *demi_slabs_alloc(size_t size, void *user) {
 #if DEMI_OPENMP
     #pragma omp critical(demi_slabs)
 #endif
-    p = a->alloc_fn(size, a->user);
+    p = DEMI_USER_WITHIN(a->alloc_fn(size, a->user));
     return p;
 }
 static void demi_slabs_free(void *memory, size_t size, void *user) {
@@ -41863,7 +41972,7 @@ static void demi_slabs_free(void *memory, size_t size, void *user) {
 #if DEMI_OPENMP
     #pragma omp critical(demi_slabs)
 #endif
-    a->free_fn(memory, size, a->user);
+    DEMI_USER_WITHIN(a->free_fn(memory, size, a->user));
 }
 
 /* Copies the walls of a scene. The first slab of a process gets its own geometry. Later slabs share
@@ -41955,6 +42064,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w = dem_world_create(&desc);
     *ok = 0;
     if (!w) return 0;
+    w->look.of = &s->head;
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
@@ -42146,10 +42256,11 @@ DEM_API void dem_slabs_destroy(dem_slabs *s) {
     dem_allocator allocator;
     int k;
     if (!s || demi_null(&s->head, __func__, s, "slabs")) return;
+    demi_calls(&s->head, __func__, 1);          /* the allocator sees incomplete slabs */
     for (k = 0; k < s->local && s->slabs; k++) dem_world_destroy(s->slabs[k].world);
     allocator = s->head.desc.allocator;
     demi_free_chain(&s->head, DEMI_RUN);
-    demi_raw_free(&allocator, s, sizeof *s);
+    demi_raw_free(0, &allocator, s, sizeof *s);
 }
 /* dem_slabs_create without the check for null. Returns null after an error. */
 static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
@@ -42164,7 +42275,7 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
     }
-    s = (dem_slabs *)demi_raw_alloc(&w->desc.allocator, sizeof *s);
+    s = (dem_slabs *)demi_raw_alloc(w, &w->desc.allocator, sizeof *s);
     if (!s) { demi_no_memory(w, "dem_slabs_create"); return 0; }
     memset(s, 0, sizeof *s);
     s->head.desc = w->desc;
@@ -42283,6 +42394,7 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
     int i;
     demi_rows_add(demi_booked_rows, &w->booked, &sums->booked);
+    demi_crushed_add(&w->booked.crushed, &sums->booked.crushed);
     w->bodies.balance.left += sums->left;
     for (i = 0; i < sums->walls; i++) {
         dem_wall_loads part;
@@ -42324,6 +42436,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     demi_rows_copy(demi_booked_rows, &w->booked, &h->booked, DEMI_HEADS);
     if (s->count == 1) w->margin.skin_auto = from->margin.skin_auto;
     demi_slab_sums_clear(w, DEMI_SUM | DEMI_LARGEST);
+    memset(&w->booked.crushed, 0, sizeof w->booked.crushed);
     for (i = 0; i < w->wall_count; i++) {
         w->walls[i].pose = from->walls[i].pose;
         w->walls[i].servo = from->walls[i].servo;
@@ -42500,6 +42613,7 @@ DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
         w->booked.overlap_max = 0;
+        memset(&w->booked.crushed, 0, sizeof w->booked.crushed);
         for (i = 0; i < w->wall_count; i++) demi_loads_reset(&w->walls[i].loads);
     }
 }
@@ -42559,524 +42673,524 @@ static const char *const demi_viewer[] = {
     "one }\n#view { height: 100%; cursor: grab }\n#key { position: absolute; left: 12px; bottom: 8",
     "px; width: 220px; pointer-events: none }\n#key canvas { height: 10px }\n#key div { display: f",
     "lex; justify-content: space-between }\n#side { border-left: 1px solid var(--soft); padding: 8",
-    "px 12px; overflow: auto }\n#side label { display: flex; justify-content: space-between; gap: ",
-    "8px; margin: 4px 0 }\n#side select, #side input { width: 150px }\nfigure { margin: 10px 0 0 }",
-    "\npre { font-size: 11px; overflow: auto; white-space: pre-wrap }\n#bar { grid-column: 1 / 3; ",
-    "display: flex; gap: 10px; align-items: center; padding: 8px 12px;\nborder-top: 1px solid var(",
-    "--soft) }\n#at { flex: 1; min-width: 60px } #time { min-width: 9em; text-align: right }\n#sce",
-    "ne iframe { position: absolute; right: 0; top: 0; width: 50%; height: 100%; border: 0 }\n.two",
-    " #view { width: 50% }\n.second { grid-template: auto 1fr / 1fr; height: 100vh } .second #side",
-    ", .second #bar { display: none }\n#say { position: absolute; inset: 0; display: grid; place-i",
-    "tems: center; padding: 2em;\npointer-events: none }\n@media (max-width: 700px) {\nbody { grid",
-    "-template: auto 60vh auto auto / 1fr; height: auto }\nh1, #bar { grid-column: 1 } #side { bor",
-    "der: 0; grid-row: 4 } #time { min-width: 6em }\n}\n</style>\n<h1 id=\"title\">Replay</h1>\n<d",
-    "iv id=\"scene\">\n<canvas id=\"view\" tabindex=\"0\" aria-label=\"The grains: drag to turn, w",
-    "heel to zoom\"></canvas>\n<div id=\"key\"><canvas id=\"scale\" width=\"256\" height=\"1\"></c",
-    "anvas><div><span id=\"least\"></span>\n<span id=\"what\"></span><span id=\"most\"></span></di",
-    "v></div>\n<div id=\"say\">reading ...</div>\n</div>\n<div id=\"side\">\n<label>colour <select",
-    " id=\"colour\"></select></label>\n<label>walls <input id=\"walls\" type=\"range\" min=\"0\" m",
-    "ax=\"1\" step=\"0.02\" value=\"0.25\"></label>\n<label>cut <select id=\"by\"><option>from the",
-    " front<option>along x<option>along y<option>along z</select></label>\n<label>cut away <input ",
-    "id=\"cut\" type=\"range\" min=\"0\" max=\"1\" step=\"0.01\" value=\"0\"></label>\n<label>slic",
-    "e <input id=\"thick\" type=\"range\" min=\"0.01\" max=\"1\" step=\"0.01\" value=\"1\"></label",
-    ">\n<label><button id=\"still\">picture</button><button id=\"film\">film</button>\n<button id=",
-    "\"beside\">second run</button><input id=\"other\" type=\"file\" accept=\".html\" hidden></lab",
-    "el>\n<label id=\"links\" hidden>forces <input id=\"forces\" type=\"range\" min=\"0\" max=\"1",
-    "\" step=\"0.02\" value=\"0.5\"></label>\n<div id=\"widest\" hidden></div>\n<div id=\"plots\">",
-    "</div>\n<details id=\"report\" hidden><summary>report</summary><pre></pre></details>\n<detail",
-    "s><summary>keys</summary>drag: turn; shift and drag, or two fingers: move; wheel: zoom;\nspac",
-    "e: play, pause; arrows: frame by frame; home, end; + -: pace; 0: the first view</details>\n</",
-    "div>\n<div id=\"bar\">\n<button id=\"play\" aria-label=\"play or pause\">play</button>\n<inpu",
-    "t id=\"at\" type=\"range\" min=\"0\" max=\"1\" step=\"any\" value=\"0\" aria-label=\"time\">",
-    "\n<span id=\"time\"></span>\n<select id=\"pace\" aria-label=\"pace\"></select>\n</div>\n<scri",
-    "pt>\n'use strict';\nconst $ = id => document.getElementById(id);\nconst blocks = type => [...",
-    "document.querySelectorAll('script[type=\"dem/' + type + '\"]')];\nconst replay = window.demRe",
-    "play = { frames: [], ready: false, drawn: 0, error: '' };\nlet head = { gravity: [0, 0, -9.81",
-    "], period: [0, 0, 0], resolution: 1e-3, values: [] };\nconst shapes = {}, walls = {}, frames ",
-    "= replay.frames;\nconst sixBits = new Uint8Array(128);\n[...'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdef",
-    "ghijklmnopqrstuvwxyz0123456789+/'].forEach(\n(c, i) => { sixBits[c.charCodeAt(0)] = i; });\nf",
-    "unction bytes(text) {\nconst s = text.trim(), pad = s.endsWith('==') ? 2 : s.endsWith('=') ? ",
-    "1 : 0;\nconst out = new Uint8Array(s.length*3/4 - pad);\nfor (let i = 0, k = 0; i < s.length;",
-    " i += 4) {\nconst v = sixBits[s.charCodeAt(i)] << 18 | sixBits[s.charCodeAt(i + 1)] << 12 |\n",
-    "sixBits[s.charCodeAt(i + 2)] << 6 | sixBits[s.charCodeAt(i + 3)];\nout[k++] = v >> 16; out[k+",
-    "+] = v >> 8; out[k++] = v;\n}\nreturn out;\n}\nconst now = { room: 0, cast: { slots: new Int3",
-    "2Array(0) }, poses: {}, values: [] };\nfunction grow(count) {\nif (count <= now.room) return;",
-    "\nconst room = Math.max(count, 2*now.room, 1024);\nconst more = (a, per, type) => { const b =",
-    " new type(per*room); if (a) b.set(a); return b; };\nnow.x = more(now.x, 3, Int32Array); now.r",
-    "adius = more(now.radius, 1, Float32Array);\nnow.speed = more(now.speed, 1, Uint8Array); now.t",
-    "urn = more(now.turn, 1, Uint32Array);\nnow.own = more(now.own, 1, Float32Array); now.is = mor",
-    "e(now.is, 1, Uint8Array);\nnow.material = more(now.material, 1, Uint16Array); now.shape = mor",
-    "e(now.shape, 1, Uint16Array);\nnow.room = room;\n}\nfunction decode(bin) {\nconst d = new Dat",
-    "aView(bin.buffer, bin.byteOffset, bin.byteLength);\nlet at = 0, changed = !frames.length;\nco",
-    "nst varint = () => {\nlet v = 0, s = 1, b;\ndo { b = bin[at++]; v += (b & 127)*s; s *= 128; }",
-    " while (b & 128);\nreturn v;\n};\nconst real = () => { at += 4; return d.getFloat32(at - 4, t",
-    "rue); };\nconst time = d.getFloat64(0, true);\nat = 8;\nfor (let n = varint(); n > 0; n--) {",
-    "\nconst wall = varint(), there = bin[at++];\nnow.poses = { ...now.poses };\nif (there) now.po",
-    "ses[wall] = [real(), real(), real(), real(), real(), real(), real()];\nelse delete now.poses[",
-    "wall];\n}\nfor (let n = varint(); n > 0; n--) { now.is[varint()] = 0; changed = true; }\nfor ",
-    "(let n = varint(), slot; n > 0; n--) {\nslot = varint();\ngrow(slot + 1);\nnow.is[slot] = 2; ",
-    "changed = true;                       // new\nnow.material[slot] = varint(); now.shape[slot] ",
-    "= varint(); now.radius[slot] = real();\nnow.x.fill(0, 3*slot, 3*slot + 3); now.speed[slot] = ",
-    "now.turn[slot] = now.own[slot] = 0;\n}\nconst before = now.cast;\nlet from = null;\nif (chang",
-    "ed) {\nconst slots = [];\nfor (let s = 0; s < now.room; s++) if (now.is[s]) slots.push(s);\nn",
-    "ow.cast = { slots: Int32Array.from(slots),\nradius: Float32Array.from(slots, s => now.radius[",
-    "s]),\nmaterial: Uint16Array.from(slots, s => now.material[s]),\nshape: Uint16Array.from(slots",
-    ", s => now.shape[s]) };\nconst index = new Map();\nbefore.slots.forEach((s, i) => index.set(s",
-    ", i));\nfrom = Int32Array.from(slots, s => now.is[s] === 2 || !index.has(s) ? -1 : index.get(",
-    "s));\nfor (const s of slots) now.is[s] = 1;\n}\nconst slots = now.cast.slots, count = slots.l",
-    "ength, q = head.resolution;\nconst f = { time, cast: now.cast, from, poses: now.poses, x: new",
-    " Float32Array(3*count),\nspeed: new Uint8Array(count), turn: head.turns ? new Uint32Array(cou",
-    "nt) : null,\nown: head.number ? new Float32Array(count) : null, values: [] };\nfor (let i = 0",
-    "; i < count; i++) {\nconst s = slots[i], is = bin[at++];\nfor (let k = 0; k < 3; k++) {\ncons",
-    "t size = is >> 2*k & 3;\nif (size === 1) now.x[3*s + k] += d.getInt8(at++);\nelse if (size ==",
-    "= 2) { now.x[3*s + k] += d.getInt16(at, true); at += 2; }\nelse if (size === 3) { now.x[3*s +",
-    " k] += d.getInt32(at, true); at += 4; }\nf.x[3*i + k] = now.x[3*s + k]*q;\n}\nif (is & 64) no",
-    "w.speed[s] = bin[at++];\nif (is & 128) {\nconst more = bin[at++];\nif (more & 1) { now.turn[s",
-    "] = d.getUint32(at, true); at += 4; }\nif (more & 2) now.own[s] = real();\n}\nf.speed[i] = no",
-    "w.speed[s];\nif (f.turn) f.turn[i] = now.turn[s];\nif (f.own) f.own[i] = now.own[s];\n}\nfor ",
-    "(let n = varint(); n > 0; n--) { const name = varint(); f.values[name] = real(); }\nif (head.",
-    "contacts) {                // by slots; from: of a wall, the contact point less the centre\nl",
-    "et n = varint();\nf.links = n-- ? { a: new Int32Array(n), b: new Int32Array(n), from: new Flo",
-    "at32Array(3*n), force: new Uint16Array(n) }\n: frames.length ? frames[frames.length - 1].link",
-    "s : null;\nfor (let k = 0; k < n; k++) {\nf.links.a[k] = varint();\nif (!(f.links.b[k] = vari",
-    "nt())) for (let c = 0; c < 3; c++, at += 2) f.links.from[3*k + c] = d.getInt16(at, true)*q;\n",
-    "f.links.force[k] = d.getUint16(at, true); at += 2;\n}\n}\nif (at !== bin.length) throw Error(",
-    "'frame ' + frames.length + ' has ' + (bin.length - at) +\n' bytes too many');\nframes.push(f)",
-    ";\n}\nconst speedOf = code => code ? Math.pow(2, (code - 128)/8) : 0;          // m/s\nconst ",
-    "speeds = Float64Array.from({ length: 256 }, (_, code) => speedOf(code));\nfunction quat(turn)",
-    " {                 // three smallest, 10 bits each, and which one is left out\nconst q = [0, ",
-    "0, 0, 0], left = turn >>> 30;\nlet sum = 0;\nfor (let k = 0, bit = 0; k < 4; k++) {\nif (k ==",
-    "= left) continue;\nq[k] = ((turn >>> bit & 1023) - 511)/511*Math.SQRT1_2; bit += 10; sum += q",
-    "[k]*q[k];\n}\nq[left] = Math.sqrt(Math.max(0, 1 - sum));\nreturn q;                          ",
-    "                                    // w x y z\n}\nconst cross = (a, b) => [a[1]*b[2] - a[2]*",
-    "b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]];\nconst dot = (a, b) => a[0]*b[0] + a[1]*",
-    "b[1] + a[2]*b[2];\nconst sum = (a, b, s = 1) => [a[0] + s*b[0], a[1] + s*b[1], a[2] + s*b[2]]",
-    ";\nconst unit = a => { const l = Math.hypot(...a) || 1; return [a[0]/l, a[1]/l, a[2]/l]; };\n",
-    "function times(p, q) {\nreturn [p[0]*q[0] - p[1]*q[1] - p[2]*q[2] - p[3]*q[3], p[0]*q[1] + p[",
-    "1]*q[0] + p[2]*q[3] - p[3]*q[2],\np[0]*q[2] - p[1]*q[3] + p[2]*q[0] + p[3]*q[1], p[0]*q[3] + ",
-    "p[1]*q[2] - p[2]*q[1] + p[3]*q[0]];\n}\nfunction rotate(q, v) {\nconst u = [q[1], q[2], q[3]]",
-    ", t = cross(u, v).map(x => 2*x), c = cross(u, t);\nreturn [v[0] + q[0]*t[0] + c[0], v[1] + q[",
-    "0]*t[1] + c[1], v[2] + q[0]*t[2] + c[2]];\n}\nconst box = { lo: [Infinity, Infinity, Infinity",
-    "], hi: [-Infinity, -Infinity, -Infinity] };\nfunction reach(p, r) {\nfor (let k = 0; k < 3; k",
-    "++) {\nbox.lo[k] = Math.min(box.lo[k], p[k] - r); box.hi[k] = Math.max(box.hi[k], p[k] + r);",
-    "\n}\n}\nfunction measure() {\nconst some = [frames[0], frames[frames.length >> 1], frames[fra",
-    "mes.length - 1]];\nfor (const f of some) {             // grains, but for the few that flew o",
-    "ff\nfor (let k = 0; k < 3; k++) {\nconst x = [];\nfor (let i = 0; i < f.cast.slots.length; i+",
-    "+) x.push(f.x[3*i + k]);\nx.sort((a, b) => a - b);\nconst out = x.length >> 8, r = Math.max(0",
-    ", ...f.cast.radius.slice(0, 1000));\nif (!x.length) continue;\nbox.lo[k] = Math.min(box.lo[k]",
-    ", x[out] - r);\nbox.hi[k] = Math.max(box.hi[k], x[x.length - 1 - out] + r);\n}\nfor (const id",
-    " in f.poses) {\nconst w = walls[id], p = f.poses[id];\nif (!w || !w.vertices || w.kind === 'p",
-    "rofile') continue;\nfor (let i = 0; i < w.vertices.length; i += 3)\nreach(sum(rotate(p.slice(",
-    "3), w.vertices.slice(i, i + 3)), p), w.radius || 0);\n}\nfor (const id in f.poses)\nif (walls",
-    "[id] && walls[id].kind === 'profile')\nfor (let i = 0, w = walls[id], p = f.poses[id]; i < w.",
-    "vertices.length; i += 3) {\nconst v = sum(rotate(p.slice(3), w.vertices.slice(i, i + 3)), p);",
-    "\nconst z = rotate(p.slice(3), [0, 0, 1]).map(Math.abs);\nfor (let k = 0; k < 3; k++) if (z[k",
-    "] < 0.5) {\nbox.lo[k] = Math.min(box.lo[k], v[k]); box.hi[k] = Math.max(box.hi[k], v[k]);\n}",
-    "\n}\n}\nfor (let k = 0; k < 3; k++) if (!(box.hi[k] > box.lo[k])) { box.lo[k] = -1; box.hi[k]",
-    " = 1; }\nbox.middle = [0, 1, 2].map(k => (box.lo[k] + box.hi[k])/2);\nbox.size = Math.hypot(.",
-    "..[0, 1, 2].map(k => box.hi[k] - box.lo[k]));\n}\nlet gl, ball, egg, stone, sheet, link, colo",
-    "urs = new Uint8Array(1024);\nconst grainShader = shape => [`#version 300 es\nprecision highp ",
-    "sampler2D;\nuniform mat4 eye, lens; uniform vec3 cutAt, cutBy; uniform float thick;\nuniform ",
-    "sampler2D wheres, colours, turns, axess;\nout vec3 ray; flat out vec3 middle; flat out vec4 p",
-    "aint; flat out float size;\nflat out mat3 body; flat out ivec2 faces;\nvec3 about(vec4 q, vec",
-    "3 v) { return v + 2.0*cross(q.yzw, cross(q.yzw, v) + q.x*v); }\nvoid main() {\nint grain = gl",
-    "_VertexID/6, k = gl_VertexID%6;           // two triangles each\nivec2 cell = ivec2(grain & 1",
-    "023, grain >> 10);\nvec2 corner = vec2(k == 1 || k == 3 || k == 4 ? 1 : -1, k == 2 || k > 3 ?",
-    " 1 : -1);\nvec4 where = texelFetch(wheres, cell, 0), colour = texelFetch(colours, cell, 0);\n",
-    "${shape !== 'ball' ? `vec4 turn = texelFetch(turns, cell, 0);\nvec3 axes = texelFetch(axess, ",
-    "cell, 0).xyz;` : ''}\n${shape === 'stone' ? 'faces = ivec2(axes.yz); axes = axes.xxx;' : 'fac",
-    "es = ivec2(0);'}\nmiddle = (eye*vec4(where.xyz, 1)).xyz; size = where.w; paint = colour;\n${s",
-    "hape !== 'ball' ? `mat3 e = mat3(eye);\nbody = mat3(e*about(turn, vec3(1, 0, 0))/axes.x, e*ab",
-    "out(turn, vec3(0, 1, 0))/axes.y,\ne*about(turn, vec3(0, 0, 1))/axes.z);` : 'body = mat3(1);'}",
-    "\nfloat d = length(middle), far = d > size ? size*d/sqrt(d*d - size*size) : size;\nvec3 n = m",
-    "iddle/d, u = normalize(abs(n.y) < 0.9 ? cross(n, vec3(0, 1, 0)) :\ncross(n, vec3(1, 0, 0)));",
-    "\nray = middle + far*(corner.x*u + corner.y*cross(u, n));\ngl_Position = lens*vec4(ray, 1);\n",
-    "float past = dot(where.xyz - cutAt, cutBy);\nif (past > 0.0 || past < -thick) gl_Position = v",
-    "ec4(2, 2, 2, 1);\n}`, `#version 300 es\nprecision highp float;\nuniform mat4 lens;\nprecision",
-    " highp sampler2D;\nuniform sampler2D planes; uniform vec4 pale;\nin vec3 ray; flat in vec3 mi",
-    "ddle; flat in vec4 paint; flat in float size; flat in mat3 body;\nflat in ivec2 faces;\nout v",
-    "ec4 pixel;\nvoid main() {\nvec3 d = normalize(ray);\n${shape === 'stone' ? `vec3 o = -(middle",
-    "*body), r = d*body, n = vec3(0);\nfloat t = -1e30, end = 1e30;                            // ",
-    "in by one face, out by another\nfor (int k = 0; k < faces.y; k++) {\nint cell = faces.x + k;",
-    "\nvec3 face = texelFetch(planes, ivec2(cell & 1023, cell >> 10), 0).xyz;\nfloat slope = dot(f",
-    "ace, r), at = (1.0 - dot(face, o))/slope;\nif (slope < 0.0 && at > t) { t = at; n = face; }\n",
-    "if (slope > 0.0) end = min(end, at);\n}\nif (t > end) discard;\nn = normalize(body*n);` : (sh",
-    "ape === 'egg' ? `vec3 o = -(middle*body), r = d*body;\nfloat a = dot(r, r), b = dot(o, r), c ",
-    "= dot(o, o) - 1.0;` : `vec3 o = -middle, r = d;\nfloat a = 1.0, b = dot(o, r), c = dot(o, o) ",
-    "- size*size;`) + `\nfloat h = b*b - a*c;\nif (h < 0.0) discard;\nfloat t = (-b - sqrt(h))/a;",
-    "\nvec3 n = ${shape === 'egg' ? 'normalize(body*(o + t*r))' : '(t*d - middle)/size'};`}\nvec3 ",
-    "hit = t*d;\nvec4 at = lens*vec4(hit, 1);\ngl_FragDepth = 0.5*at.z/at.w + 0.5;\nfloat light = ",
-    "0.35 + 0.65*max(0.0, dot(n, normalize(vec3(-0.3, 0.5, 0.8))));\npixel = vec4(mix(paint.rgb*li",
-    "ght + 0.12*pow(max(0.0, n.z), 30.0), pale.rgb, pale.a), 1);\n}`];\nconst wallShader = [`#vers",
-    "ion 300 es\nuniform mat4 eye, lens; uniform vec3 place; uniform vec4 turn;\nin vec3 where; ou",
-    "t vec3 seen, local;\nvoid main() {\nlocal = where;\nvec3 v = where + 2.0*cross(turn.yzw, cros",
-    "s(turn.yzw, where) + turn.x*where);\nseen = (eye*vec4(v + place, 1)).xyz;\ngl_Position = lens",
-    "*vec4(seen, 1);\n}`, `#version 300 es\nprecision highp float;\nuniform vec4 paint; uniform ve",
-    "c4 hole; uniform vec2 rim;     // kind, aperture, bar, length\nin vec3 seen, local; out vec4 ",
-    "pixel;\nvoid main() {\nfloat solid = 1.0, pitch = hole.y + hole.z, open = 0.0;\nif (rim.x > 0",
-    ".0 && length(local.xy) > rim.x) discard;\nif (hole.x > 0.0) {\nvec2 p = local.xy, side = vec2",
-    "(pitch);\nif (hole.x == 5.0) side.x = hole.w > 0.0 ? hole.w + hole.z : 1e9;\nif (hole.x == 2.",
-    "0) side.y = 1e9;\nif (rim.y > 0.0) {\nside.y = pitch*0.8660254;\nif (mod(floor(p.y/side.y + 0",
-    ".5), 2.0) > 0.5) p.x += 0.5*pitch;\n}\np = abs(p - side*floor(p/side + 0.5));\nvec2 clear = h",
-    "ole.x == 5.0 ? vec2(hole.w > 0.0 ? hole.w : 1e9, hole.y) : vec2(hole.y);\nif (hole.x == 2.0) ",
-    "clear.y = 2e9;\nopen = hole.x == 4.0 ? step(length(p), 0.5*hole.y) : step(p.x, 0.5*clear.x)*",
-    "\nstep(p.y, 0.5*clear.y);\nfloat blur = smoothstep(0.2, 1.0, length(fwidth(local.xy))/pitch);",
-    "\nsolid = mix(1.0 - open, 1.0 - hole.y*hole.y/(pitch*pitch), blur);\nif (solid < 0.02) discar",
-    "d;\n}\nvec3 n = cross(dFdx(seen), dFdy(seen));       // of a line: perhaps nothing\npixel = v",
-    "ec4(paint.rgb*(0.55 + 0.45*abs(n.z)/max(length(n), 1e-30)), paint.a*solid);\n}`];\nconst link",
-    "Shader = [`#version 300 es\nuniform mat4 eye, lens;\nin vec3 where, hue; out vec3 paint;\nvoi",
-    "d main() { paint = hue; gl_Position = lens*eye*vec4(where, 1); }`, `#version 300 es\nprecisio",
-    "n highp float;\nin vec3 paint; out vec4 pixel;\nvoid main() { pixel = vec4(paint, 1); }`];\nf",
-    "unction program(sources, names) {\nconst p = gl.createProgram();\nsources.forEach((source, k)",
-    " => {\nconst s = gl.createShader(k ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);\ngl.shaderSource",
-    "(s, source); gl.compileShader(s);\nif (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw Er",
-    "ror(gl.getShaderInfoLog(s));\ngl.attachShader(p, s);\n});\nnames.forEach((name, k) => gl.bind",
-    "AttribLocation(p, k, name));\ngl.linkProgram(p);\nif (!gl.getProgramParameter(p, gl.LINK_STAT",
-    "US)) throw Error(gl.getProgramInfoLog(p));\nconst at = { p };\nfor (let k = 0, n = gl.getProg",
-    "ramParameter(p, gl.ACTIVE_UNIFORMS); k < n; k++) {\nconst name = gl.getActiveUniform(p, k).na",
-    "me;\nat[name] = gl.getUniformLocation(p, name);\n}\nreturn at;\n}\nconst kinds = {};         ",
-    "            // buffers of balls, eggs and stones\nfunction prepare() {\ngl = $('view').getCon",
-    "text('webgl2', { alpha: false, preserveDrawingBuffer: true });\nif (!gl) throw Error('this br",
-    "owser has no WebGL 2, by which grains are drawn: switch it on, ' +\n'or take another browser'",
-    ");\nball = program(grainShader('ball'), []);\negg = program(grainShader('egg'), []);\nstone =",
-    " program(grainShader('stone'), []);\nsheet = program(wallShader, ['where']);\nlink = program(",
-    "linkShader, ['where', 'hue']);\nlink.array = gl.createVertexArray(); link.buffer = gl.createB",
-    "uffer();\ngl.bindVertexArray(link.array); gl.bindBuffer(gl.ARRAY_BUFFER, link.buffer);\nfor (",
-    "let k = 0; k < 2; k++) { gl.enableVertexAttribArray(k); gl.vertexAttribPointer(k, 3, gl.FLOAT",
-    ", false, 24, 12*k); }\nkinds.array = gl.createVertexArray();         // empty: grains stand i",
-    "n textures, 1024 to a row\nfor (const kind of ['ball', 'egg', 'stone']) {\nconst k = kinds[ki",
-    "nd] = { room: 0, count: 0, texture: [] };\nfor (let i = 0; i < (kind === 'ball' ? 2 : kind ==",
-    "= 'egg' ? 4 : 5); i++) {\nk.texture[i] = gl.createTexture();\ngl.bindTexture(gl.TEXTURE_2D, k",
-    ".texture[i]);\ngl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);\ngl.texPar",
-    "ameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);\n}\n}\ngl.bindVertexArray(null);\n",
-    "const faces = [];                             // of all polyhedra, in texels\nfor (const id i",
-    "n shapes) if (shapes[id].planes) {\nshapes[id].first = faces.length/4;\nfor (let k = 0, p = s",
-    "hapes[id].planes; k < p.length; k += 3) faces.push(...p.slice(k, k + 3), 0);\n}\nfor (const i",
-    "d in shapes) if (shapes[id].pieces) {   // each as its own shape, placed\nconst rows = [], p ",
-    "= shapes[id].pieces;\nfor (let k = 0; k < p.length; k += 8)\nrows.push({ ...shapes[p[k]], at:",
-    " p.slice(k + 1, k + 4), turn: p.slice(k + 4, k + 8) });\nshapes[id].pieces = rows;\n}\nconst ",
-    "rows = Math.ceil(faces.length/4096) || 1, texels = new Float32Array(4096*rows);\ntexels.set(f",
-    "aces);\ngl.bindTexture(gl.TEXTURE_2D, kinds.stone.texture[4]);\ngl.texImage2D(gl.TEXTURE_2D, ",
-    "0, gl.RGBA32F, 1024, rows, 0, gl.RGBA, gl.FLOAT, texels);\n}\nfunction tessellate(w) {\nconst",
-    " far = 0.75*box.size, v = w.vertices, out = [];\nconst quad = (a, b, c, d) => out.push(...a, ",
-    "...b, ...c, ...a, ...c, ...d);\nconst from = rotate([w.pose[3], -w.pose[4], -w.pose[5], -w.po",
-    "se[6]],\nsum(box.middle, w.pose, -1));     // the picture's middle, as the wall sees it\ncons",
-    "t along = rotate(w.pose.slice(3), [0, 0, 1]).map(Math.abs);\nconst half = 0.5*[0, 1, 2].reduc",
-    "e((s, k) => s + (box.hi[k] - box.lo[k])*along[k], 0);\nif (w.kind === 'mesh')\nfor (const k o",
-    "f w.corners) out.push(v[3*k], v[3*k + 1], v[3*k + 2]);\nelse if (w.kind === 'profile') {\ncon",
-    "st z = [from[2] - half, from[2] + half];\nfor (let k = 0; k < w.corners.length; k += 2) {\nco",
-    "nst a = 3*w.corners[k], b = 3*w.corners[k + 1];\nquad([v[a], v[a + 1], z[0]], [v[b], v[b + 1]",
-    ", z[0]], [v[b], v[b + 1], z[1]],\n[v[a], v[a + 1], z[1]]);\n}\n} else if (w.kind === 'cylinde",
-    "r') {\nconst n = 72;\nfor (let k = 0; k < n; k++) {\nconst p = [k, (k + 1)%n].map(i => [w.rad",
-    "ius*Math.cos(2*Math.PI*i/n),\nw.radius*Math.sin(2*Math.PI*i/n)]);\nquad([...p[0], from[2] - h",
-    "alf], [...p[1], from[2] - half], [...p[1], from[2] + half],\n[...p[0], from[2] + half]);\n}\n",
-    "} else if (w.kind === 'plane' || w.kind === 'sieve') {\nconst disc = w.rim > 0, n = disc ? 72",
-    " : 4, r = disc ? 0.9999*w.rim : Math.SQRT2*far;\nconst [x, y] = disc ? [0, 0] : from, rim = k",
-    " => 2*Math.PI*(k%n + 0.5)/n;\nconst at = k => [x + r*Math.cos(rim(k)), y + r*Math.sin(rim(k))",
-    ", 0];\nfor (let k = 0; k < n; k++) out.push(x, y, 0, ...at(k), ...at(k + 1));\n}\nw.count = o",
-    "ut.length/3;\nconst edges = new Map();            // those of one triangle alone, as lines: s",
-    "een edge-on, too\nfor (let k = 0; k < out.length; k += 9)\nfor (let i = 0; i < 3; i++) {\ncon",
-    "st a = out.slice(k + 3*i, k + 3*i + 3), b = out.slice(k + (3*i + 3)%9, k + (3*i + 3)%9 + 3);",
-    "\nconst [s, t] = [a.join(), b.join()], key = s < t ? s + ' ' + t : t + ' ' + s;\nedges.set(ke",
-    "y, edges.has(key) ? 0 : [...a, ...b]);\n}\nfor (const e of edges.values()) if (e) out.push(..",
-    ".e);\nw.all = out.length/3;\nw.buffer = gl.createBuffer(); w.array = gl.createVertexArray();",
-    "\ngl.bindVertexArray(w.array);\ngl.bindBuffer(gl.ARRAY_BUFFER, w.buffer);\ngl.bufferData(gl.A",
-    "RRAY_BUFFER, new Float32Array(out), gl.STATIC_DRAW);\ngl.enableVertexAttribArray(0); gl.verte",
-    "xAttribPointer(0, 3, gl.FLOAT, false, 0, 0);\ngl.bindVertexArray(null);\n}\nconst palette = [",
-    "[78, 121, 167], [242, 142, 43], [89, 161, 79], [225, 87, 89], [118, 183, 178],\n[237, 201, 72",
-    "], [176, 122, 161], [156, 117, 95]];\nconst materials = Uint8Array.from(palette.flatMap(c => ",
-    "[...c, 255]));\nfunction viridis(t) {\nconst c = [[0.2777, 0.1051, -0.3309, -4.6342, 6.2283, ",
-    "4.7764, -5.4355],\n[0.0054, 1.4046, 0.2148, -5.7991, 14.1799, -13.7451, 4.6459],\n[0.3341, 1.",
-    "3846, 0.0951, -19.3324, 56.6906, -65.3530, 26.3124]];\nreturn c.map(a => 255*Math.min(1, Math",
-    ".max(0, a.reduceRight((s, x) => s*t + x, 0))));\n}\nfor (let k = 0; k < 256; k++) colours.set",
-    "([...viridis(k/255).map(Math.round), 255], 4*k);\nconst range = { speed: [0, 1], size: [0, 1]",
-    ", own: [0, 1] };\nfunction ranges() {\nconst count = new Float64Array(256);\nlet all = 0, low",
-    " = Infinity, high = -Infinity, small = Infinity, large = -Infinity;\nfor (const f of frames) ",
-    "{\nfor (let i = 0; i < f.speed.length; i++) { count[f.speed[i]]++; all++; }\nfor (const r of ",
-    "f.cast.radius) { small = Math.min(small, r); large = Math.max(large, r); }\nif (f.own) for (c",
-    "onst x of f.own) { low = Math.min(low, x); high = Math.max(high, x); }\n}\nlet k = 255;\nfor ",
-    "(let over = 0; k > 1 && (over += count[k]) < 0.005*all; k--);\nrange.speed = [0, speedOf(k)];",
-    "\nconst forces = new Float64Array(65536), seen = new Set();\nlet links = 0, strong = 65535;\n",
-    "for (const f of frames) if (f.links && !seen.has(f.links)) {\nseen.add(f.links); links += f.l",
-    "inks.force.length;\nfor (const code of f.links.force) forces[code]++;\n}\nfor (let over = 0; ",
-    "strong > 0 && (over += forces[strong]) <= 0.01*links; strong--);\nrange.force = strong; $('li",
-    "nks').hidden = $('widest').hidden = !links;\n$('widest').textContent = 'the widest and reddes",
-    "t line: ' + +Math.pow(2, (strong - 32768)/64).toPrecision(3) + ' N or more';\nrange.size = [s",
-    "mall, large > small ? large : small*1.01];\nrange.own = [low, high > low ? high : low + 1];\n",
-    "}\nfunction showKey() {\nconst what = $('colour').value, key = $('scale').getContext('2d');\n",
-    "$('key').hidden = what === 'material';\nif (what === 'material') return;\nkey.putImageData(ne",
-    "w ImageData(new Uint8ClampedArray(colours), 256, 1), 0, 0);\nconst [least, most] = range[what",
-    "], digits = x => String(+x.toPrecision(3));\n$('least').textContent = digits(least); $('most'",
-    ").textContent = digits(most);\n$('what').textContent = { speed: 'speed (m/s)', size: 'radius ",
-    "(m)', own: head.number }[what];\n}\nconst camera = { yaw: -1, pitch: 0.35, distance: 1, targe",
-    "t: [0, 0, 0] };\nlet up, side, ahead, first, at = 0, playing = false, pace = 1, dirty = true;",
-    "\nfunction turnedTo() {\nconst c = Math.cos(camera.pitch), s = Math.sin(camera.pitch);\nconst",
-    " flat = sum(side.map(x => x*Math.cos(camera.yaw)), ahead, Math.sin(camera.yaw));\nreturn sum(",
-    "flat.map(x => x*c), up, s);                    // from the target to the eye\n}\nfunction put",
-    "(kind, n) {\nconst k = kinds[kind];\nif (n > k.room) {\nk.room = 1024*Math.ceil(Math.max(n, 1",
-    ".5*k.room)/1024);\nk.w = new Float32Array(4*k.room); k.c = new Uint8Array(4*k.room);\nif (kin",
-    "d !== 'ball') { k.t = new Float32Array(4*k.room); k.a = new Float32Array(4*k.room); }\n}\nk.c",
-    "ount = 0;\nreturn k;\n}\nfunction hues(f, what, least, most) {\nif (f.hue && f.hue.what === w",
-    "hat) return f.hue;\nconst cast = f.cast, of = new Uint8Array(cast.slots.length), scale = 255/",
-    "(most - least);\nfor (let i = 0; i < of.length; i++) {\nconst v = what === 'speed' ? speeds[f",
-    ".speed[i]] : what === 'size' ? cast.radius[i] :\nwhat === 'own' ? f.own[i] : 0;\nof[i] = what",
-    " === 'material' ? (cast.material[i] - 1 + 8)%8 :\nMath.max(0, Math.min(255, Math.round((v - l",
-    "east)*scale)));\n}\nreturn f.hue = { what, of, table: what === 'material' ? materials : colou",
-    "rs };\n}\nfunction fill(f, g, part) {\nconst what = $('colour').value, [least, most] = range[",
-    "what] || [0, 1], cast = f.cast;\nlet balls = 0, eggs = 0, stones = 0;\nfor (let i = 0; i < ca",
-    "st.slots.length; i++) {\nconst s = shapes[cast.shape[i]];\nif (!s) balls++; else if (s.parts)",
-    " balls += s.parts.length/4;\nelse for (const piece of s.pieces || [s]) if (piece.axes) eggs++",
-    "; else stones++;\n}\nfor (const id in f.poses) if (walls[id] && walls[id].kind === 'grains')",
-    "\nballs += walls[id].vertices.length/3;\nconst b = put('ball', balls), e = put('egg', eggs), ",
-    "o = put('stone', stones), half = head.period.map(p => p/2);\nlet n = null;\nif (g && g.from) ",
-    "{                  // who is who in the next frame\nn = new Int32Array(cast.slots.length).fil",
-    "l(-1);\ng.from.forEach((old, i) => { if (old >= 0) n[old] = i; });\n}\nconst fx = f.x, gx = g",
-    " ? g.x : fx, hue = hues(f, what, least, most), wrap = half.some(h => h > 0);\nconst laid = (k",
-    ", at, x, y, z, size, c) => {\nconst m = 4*at;\nk.w[m] = x; k.w[m + 1] = y; k.w[m + 2] = z; k.",
-    "w[m + 3] = size;\nk.c[m] = hue.table[c]; k.c[m + 1] = hue.table[c + 1]; k.c[m + 2] = hue.tabl",
-    "e[c + 2];\nk.c[m + 3] = 255;\n};\nfor (let i = 0; i < cast.slots.length; i++) {\nconst j = !g",
-    " ? -1 : n ? n[i] : i, shape = shapes[cast.shape[i]], r = cast.radius[i];\nconst a = 3*i, c = ",
-    "4*hue.of[i];\nlet x = fx[a], y = fx[a + 1], z = fx[a + 2];\nif (j >= 0 && part > 0) {\nconst ",
-    "dx = gx[3*j] - x, dy = gx[3*j + 1] - y, dz = gx[3*j + 2] - z;\nif (!wrap || !(half[0] > 0 && ",
-    "Math.abs(dx) > half[0] || half[1] > 0 && Math.abs(dy) > half[1]\n|| half[2] > 0 && Math.abs(d",
-    "z) > half[2])) { x += part*dx; y += part*dy; z += part*dz; }\n}\nif (now.at) { now.at[a] = x;",
-    " now.at[a + 1] = y; now.at[a + 2] = z; }\nif (!shape) { laid(b, b.count++, x, y, z, r, c); co",
-    "ntinue; }\nlet q = quat(f.turn[i]);\nif (j >= 0 && part > 0) {\nconst to = quat(g.turn[j]), s",
-    "ame = q[0]*to[0] + q[1]*to[1] + q[2]*to[2] + q[3]*to[3];\nq = q.map((x, k) => x*(1 - part) + ",
-    "(same < 0 ? -part : part)*to[k]);\nconst l = Math.hypot(...q) || 1;\nq = q.map(x => x/l);\n}",
-    "\nconst scale = r/shape.radius;\nif (!shape.parts) for (const piece of shape.pieces || [shape",
-    "]) {\nconst v = piece.at ? rotate(q, piece.at) : [0, 0, 0], turn = piece.turn ? times(q, piec",
-    "e.turn) : q;\nconst size = scale*piece.radius, place = [x + scale*v[0], y + scale*v[1], z + s",
-    "cale*v[2]];\nif (piece.axes) {\ne.t.set(turn, 4*e.count);\nfor (let k = 0; k < 3; k++) e.a[4*",
-    "e.count + k] = piece.axes[k]*scale;\nlaid(e, e.count++, ...place, size, c);\n} else {\no.t.se",
-    "t(turn, 4*o.count);\no.a.set([scale, piece.first, piece.planes.length/3, 0], 4*o.count);\nlai",
-    "d(o, o.count++, ...place, size, c);\n}\n} else for (let k = 0; k < shape.parts.length; k += 4",
-    ") {\nconst v = rotate(q, shape.parts.slice(k, k + 3));\nlaid(b, b.count++, x + scale*v[0], y ",
-    "+ scale*v[1], z + scale*v[2], scale*shape.parts[k + 3],\nc);\n}\n}\nfor (const id in f.poses)",
-    " if (walls[id] && walls[id].kind === 'grains') {\nconst w = walls[id], pose = f.poses[id];\nf",
-    "or (let k = 0; k < w.vertices.length; k += 3) {\nconst v = sum(rotate(pose.slice(3), w.vertic",
-    "es.slice(k, k + 3)), pose), m = 4*b.count++;\nb.w.set([...v, w.radius], m); b.c.set([150, 150",
-    ", 150, 255], m);\n}\n}\nfor (const k of [b, e, o]) {\nif (!k.count) continue;\nconst rows = M",
-    "ath.ceil(k.count/1024);\n[k.w, k.c, k.t, k.a].forEach((data, i) => {\nif (!data) return;\ngl.",
-    "bindTexture(gl.TEXTURE_2D, k.texture[i]);\nif (i === 1) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG",
-    "BA8, 1024, rows, 0, gl.RGBA,\ngl.UNSIGNED_BYTE, data.subarray(0, 4096*rows));\nelse gl.texIma",
-    "ge2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, rows, 0, gl.RGBA, gl.FLOAT,\ndata.subarray(0, 4096*r",
-    "ows));\n});\n}\n}\nfunction drawLinks(f, eyeAt, eye, lens, left) {\nconst l = f.links, cast =",
-    " f.cast, out = [], thick = +$('forces').value*(range.size[0] + range.size[1])/2;\nif (!cast.i",
-    "ndex) { cast.index = new Map(); cast.slots.forEach((s, i) => cast.index.set(s, i)); }\nfor (l",
-    "et k = 0; k < l.a.length; k++) {\nconst i = cast.index.get(l.a[k]), j = l.b[k] ? cast.index.g",
-    "et(l.b[k] - 1) : -1;\nif (i === undefined || j === undefined) continue;             // a grai",
-    "n has left since\nconst a = now.at.subarray(3*i, 3*i + 3), part = Math.min(1, Math.pow(2, (l.",
-    "force[k] - range.force)/64));\nconst d = j < 0 ? l.from.slice(3*k, 3*k + 3) : [0, 1, 2].map(c",
-    " => {\nconst x = now.at[3*j + c] - a[c], period = head.period[c];\nreturn period > 0 ? x - pe",
-    "riod*Math.round(x/period) : x;\n});\nconst to = sum(a, d), middle = sum(a, d, 0.5);\nif (left",
-    "(middle)) continue;\nconst half = unit(cross(d, sum(eyeAt, middle, -1))).map(x => x*Math.max(",
-    "0.02, part)*thick);\nconst hue = [0.1 + 0.75*part, 0.35*(1 - part), 0.75*(1 - part) + 0.05];",
-    "\nconst c = [sum(a, half), sum(a, half, -1), sum(to, half), sum(to, half, -1)];\nfor (const n",
-    " of [0, 1, 2, 2, 1, 3]) out.push(...c[n], ...hue);\n}\ngl.useProgram(link.p); gl.bindVertexAr",
-    "ray(link.array); gl.bindBuffer(gl.ARRAY_BUFFER, link.buffer);\ngl.uniformMatrix4fv(link.eye, ",
-    "false, eye); gl.uniformMatrix4fv(link.lens, false, lens);\ngl.bufferData(gl.ARRAY_BUFFER, new",
-    " Float32Array(out), gl.STREAM_DRAW);\ngl.disable(gl.DEPTH_TEST); gl.drawArrays(gl.TRIANGLES, ",
-    "0, out.length/6); gl.enable(gl.DEPTH_TEST);\nreplay.links = out.length/36;\n}\nfunction draw(",
-    ") {\nconst canvas = $('view'), ratio = Math.min(2, window.devicePixelRatio || 1);\nconst widt",
-    "h = Math.round(canvas.clientWidth*ratio);\nconst height = Math.round(canvas.clientHeight*rati",
-    "o);\nif (canvas.width !== width || canvas.height !== height) { canvas.width = width;\ncanvas.",
-    "height = height; }\nconst k = Math.min(Math.floor(at), frames.length - 1), f = frames[k], g =",
-    " frames[k + 1];\nconst part = g ? at - k : 0, time = f.time + (g ? part*(g.time - f.time) : 0",
-    ");\nconst back = turnedTo(), z = back, x = unit(cross(up, z)), y = cross(z, x);\nconst eyeAt ",
-    "= sum(camera.target, back, camera.distance);\nconst eye = new Float32Array([x[0], y[0], z[0],",
-    " 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0,\n-dot(x, eyeAt), -dot(y, eyeAt), -dot(z, eyeAt)",
-    ", 1]);\nconst near = Math.max(0.01*camera.distance, camera.distance - 1.5*box.size);\nconst l",
-    "ast = camera.distance + 2*box.size, open = Math.tan(0.3);\nconst lens = new Float32Array([hei",
-    "ght/width/open, 0, 0, 0, 0, 1/open, 0, 0,\n0, 0, (last + near)/(near - last), -1, 0, 0, 2*las",
-    "t*near/(near - last), 0]);\nconst dark = matchMedia('(prefers-color-scheme: dark)').matches;",
-    "\ngl.viewport(0, 0, width, height);\ngl.clearColor(...(dark ? [0.083, 0.094, 0.106] : [1, 1, ",
-    "1]), 1);\ngl.depthMask(true);\ngl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);\ngl.enabl",
-    "e(gl.DEPTH_TEST); gl.disable(gl.BLEND);\nconst lines = f.links && +$('forces').value > 0;\nno",
-    "w.at = lines ? new Float32Array(f.x.length) : null;\nfill(f, g, part);\nconst cut = +$('cut')",
-    ".value, slice = +$('thick').value, by = $('by').selectedIndex - 1;\nconst across = by < 0 ? b",
-    "ox.size : box.hi[by] - box.lo[by], on = cut > 0 || slice < 1;\nconst cutBy = by < 0 ? z : [0,",
-    " 1, 2].map(k => +(k === by));\nconst cutAt = sum(box.middle, cutBy, (0.5 - cut)*across);\nfor",
-    " (const [kind, p] of [['ball', ball], ['egg', egg], ['stone', stone]]) {\nif (!kinds[kind].co",
-    "unt) continue;\ngl.useProgram(p.p);\ngl.uniformMatrix4fv(p.eye, false, eye); gl.uniformMatrix",
-    "4fv(p.lens, false, lens);\ngl.uniform3fv(p.cutAt, cutAt); gl.uniform3fv(p.cutBy, on ? cutBy :",
-    " [0, 0, 0]);\ngl.uniform1f(p.thick, slice < 1 ? slice*across : 1e30);\ngl.uniform4f(p.pale, .",
-    "..(dark ? [0.083, 0.094, 0.106] : [1, 1, 1]), lines ? 0.75 : 0);\n['wheres', 'colours', 'turn",
-    "s', 'axess', 'planes'].forEach((name, i) => {\nif (!p[name]) return;\ngl.activeTexture(gl.TEX",
-    "TURE0 + i);\ngl.bindTexture(gl.TEXTURE_2D, kinds[kind].texture[i]);\ngl.uniform1i(p[name], i)",
-    ";\n});\ngl.activeTexture(gl.TEXTURE0);\ngl.bindVertexArray(kinds.array);\ngl.drawArrays(gl.TR",
-    "IANGLES, 0, 6*kinds[kind].count);\n}\nif (lines) drawLinks(f, eyeAt, eye, lens, p => {\nconst",
-    " past = dot(sum(p, cutAt, -1), cutBy);\nreturn on && (past > 0 || slice < 1 && past < -slice*",
-    "across);\n});\ngl.useProgram(sheet.p);\ngl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ON",
-    "E_MINUS_SRC_ALPHA); gl.depthMask(false);\ngl.uniformMatrix4fv(sheet.eye, false, eye); gl.unif",
-    "ormMatrix4fv(sheet.lens, false, lens);\nconst solid = +$('walls').value, shade = dark ? [0.75",
-    ", 0.8, 0.86] : [0.35, 0.4, 0.46];\ngl.depthMask(solid > 0.98);\nfor (const id in f.poses) {\n",
-    "const w = walls[id];\nif (!w || w.kind === 'grains' || !solid) continue;\nlet pose = f.poses[",
-    "id];\nconst to = g && g.poses[id];\nif (to && part > 0) {             // half way: along the ",
-    "chord, turned on the shorter way\nlet same = 0, q = [];\nfor (let i = 3; i < 7; i++) same += ",
-    "pose[i]*to[i];\nq = pose.map((v, i) => v*(1 - part) + (i > 2 && same < 0 ? -part : part)*to[i",
-    "]);\nconst l = Math.hypot(q[3], q[4], q[5], q[6]) || 1;\npose = q.map((v, i) => i > 2 ? v/l :",
-    " v);\n}\nif (!w.array) { w.pose = pose; tessellate(w); }\nconst weight = w.kind === 'plane' ?",
-    " 0.5 : w.kind === 'sieve' ? 2 : 1;\ngl.uniform4f(sheet.paint, ...shade, Math.min(1, solid*wei",
-    "ght));\ngl.uniform4f(sheet.hole, ...(w.hole || [0, 1, 1, 0]));\ngl.uniform2f(sheet.rim, w.rim",
-    " || 0, w.staggered || 0);\ngl.uniform3fv(sheet.place, pose.slice(0, 3)); gl.uniform4fv(sheet.",
-    "turn, pose.slice(3));\ngl.bindVertexArray(w.array);\ngl.drawArrays(gl.TRIANGLES, 0, w.count);",
-    "\ngl.uniform4f(sheet.paint, ...shade, Math.min(1, 3*solid));\ngl.drawArrays(gl.LINES, w.count",
-    ", w.all - w.count);\n}\ngl.bindVertexArray(null); gl.depthMask(true);\n$('time').textContent ",
-    "= time.toPrecision(4) + ' s';\n$('at').value = at;\nplot(time);\nif (second) second.contentWi",
-    "ndow.postMessage({ dem: { time, camera } }, '*');\nreplay.drawn++; replay.at = at; replay.tim",
-    "e = time;\nreplay.project = p => {             // where a place is in the picture, pixels fro",
-    "m below\nconst e = sum(p, eyeAt, -1), d = -dot(z, e);\nreturn [width/2*(1 + dot(x, e)/d*heigh",
-    "t/width/open), height/2*(1 + dot(y, e)/d/open), d];\n};\n}\nconst plots = [];\nconst short = ",
-    "v => { const s = String(+v.toPrecision(3)); return s.length < 8 ? s : v.toExponential(1); };",
-    "\nfunction ticks(from, to) {\nconst ten = Math.pow(10, Math.floor(Math.log10((to - from)/2)))",
-    ", out = [];\nconst step = ten*[5, 2, 1].find(k => k*ten <= (to - from)/2);\nfor (let k = Math",
-    ".ceil(from/step - 1e-9); k*step <= to + 1e-9*step; k++) out.push(k*step);\nreturn out.map(t =",
-    "> +t.toPrecision(12));\n}\nfunction valueAt(q, t) {              // of a curve, between its p",
-    "oints; nothing outside\nconst i = q.t.findIndex(s => s >= t);\nif (i < 0 || !i && t < q.t[0])",
-    " return undefined;\nreturn i ? q.v[i - 1] + (t - q.t[i - 1])/(q.t[i] - q.t[i - 1])*(q.v[i] - ",
-    "q.v[i - 1]) : q.v[0];\n}\nfunction label(p, d, X, Y, [left, right, top, foot], from, to) {\nc",
-    "onst taken = [];\nfor (const q of p.curves) {\nconst half = d.measureText(q.name).width/2;\nl",
-    "et best = { room: -Infinity, at: [left + half, top + 12*taken.length] };\nfor (let s = 0; s <",
-    "= 20; s++)\nfor (const off of [-9, 9]) {\nconst t = from + s/20*(to - from), v = valueAt(q, t",
-    "), x = X(t), y = Y(v) + off;\nif (v === undefined || x - half < left || x + half > right || y",
-    " < top || y > foot) continue;\nlet room = 60;\nfor (const o of p.curves) for (let u = -2; u <",
-    " 3; u++) {\nconst other = valueAt(o, t + u/2*half*(to - from)/(X(to) - X(from)));\nif (other ",
-    "!== undefined) room = Math.min(room, Math.abs(Y(other) - y)*(o === q ? 4 : 1));\n}\nfor (cons",
-    "t [a, b, c] of taken) if (Math.abs(x - a) < half + c) room = Math.min(room, Math.abs(y - b) -",
-    " 6);\nif (room > best.room) best = { room, at: [x, y] };\n}\nq.label = best.at;\ntaken.push([",
-    "...best.at, half]);\n}\n}\nfunction plot(time) {\nconst from = frames[0].time, to = Math.max(",
-    "frames[frames.length - 1].time, from + 1e-9);\nconst ink = getComputedStyle(document.body).co",
-    "lor, ratio = window.devicePixelRatio || 1;\nconst soft = getComputedStyle(document.documentEl",
-    "ement).getPropertyValue('--soft');\nfor (const p of plots) {\nconst c = p.canvas, d = c.getCo",
-    "ntext('2d'), w = c.clientWidth, h = c.clientHeight;\nif (c.width !== Math.round(w*ratio)) { c",
-    ".width = Math.round(w*ratio);\nc.height = Math.round(h*ratio); }\nd.setTransform(ratio, 0, 0,",
-    " ratio, 0, 0);\nd.clearRect(0, 0, w, h);\nconst top = 8, foot = h - 18, left = 58;\nconst X =",
-    " t => left + (w - left - 8)*(t - from)/(to - from);\nconst Y = v => foot - (foot - top)*(p.mo",
-    "st > p.least ? (v - p.least)/(p.most - p.least) : 0.5);\nconst line = (x0, y0, x1, y1) => { d",
-    ".beginPath(); d.moveTo(x0, y0); d.lineTo(x1, y1); d.stroke(); };\nd.font = '11px system-ui'; ",
-    "d.fillStyle = ink; d.strokeStyle = soft;\nline(left, foot, w - 8, foot); line(left, top, left",
-    ", foot);\nd.textAlign = 'right'; d.textBaseline = 'middle';\nfor (const v of p.most > p.least",
-    " ? ticks(p.least, p.most) : [p.most]) {\nline(left - 3, Y(v), left, Y(v));\nd.fillText(short(",
-    "v), left - 5, Y(v));\n}\nd.textAlign = 'center';\nticks(from, to).forEach((t, i, all) => {\nl",
-    "ine(X(t), top, X(t), foot + 3);\nd.fillText(t + (i === all.length - 1 ? ' s' : ''), Math.min(",
-    "X(t), w - 16), h - 7);\n});\nconst colour = k => 'rgb(' + palette[k%palette.length] + ')';\np",
-    ".curves.forEach((q, k) => {\nd.strokeStyle = colour(k); d.beginPath();\nq.t.forEach((t, i) =>",
-    " i ? d.lineTo(X(t), Y(q.v[i])) : d.moveTo(X(t), Y(q.v[i])));\nd.stroke();\n});\nif (p.width !",
-    "== w) { p.width = w; label(p, d, X, Y, [left + 2, w - 4, top + 5, foot - 6], from, to); }\nd.",
-    "lineWidth = 3; d.strokeStyle = getComputedStyle(document.body).backgroundColor;\np.curves.for",
-    "Each((q, k) => { d.fillStyle = colour(k);\nd.strokeText(q.name, ...q.label); d.fillText(q.nam",
-    "e, ...q.label); });\nd.lineWidth = 1;\nd.strokeStyle = ink; d.globalAlpha = 0.5;\nline(X(time",
-    "), top, X(time), foot);\nd.globalAlpha = 1;\n}\n}\nfunction makePlots() {\nhead.values.forEac",
-    "h((name, k) => {\nconst unit = (/\\(([^()]*)\\)\\s*$/.exec(name) || [])[1], q = { name, t: []",
-    ", v: [] };\nfor (const f of frames) if (f.values[k] !== undefined && isFinite(f.values[k])) {",
-    "\nq.t.push(f.time); q.v.push(f.values[k]);\n}\nif (!q.t.length) return;\nlet p = plots.find(o",
-    "ther => unit && other.unit === unit);\nif (!p) {\nconst figure = document.createElement('figu",
-    "re');\nplots.push(p = { unit, curves: [], least: Infinity, most: -Infinity,\ncanvas: document",
-    ".createElement('canvas') });\np.canvas.setAttribute('role', 'img');\nfigure.append(p.canvas);",
-    " $('plots').append(figure);\n}\np.curves.push(q);\nfor (const v of q.v) { p.least = Math.min(",
-    "p.least, v); p.most = Math.max(p.most, v); }\np.canvas.setAttribute('aria-label', p.curves.ma",
-    "p(c => c.name).join(', ') + ' over time');\np.canvas.style.height = 120 + 15*p.curves.length ",
-    "+ 'px';\n});\n}\nlet second = null, recorder = null;\nfunction keep(blob, end) {\nconst a = d",
-    "ocument.createElement('a');\na.href = URL.createObjectURL(blob);\na.download = (document.titl",
-    "e.replace(/[^\\w.-]+/g, '_') || 'replay') + end;\nreplay.kept = { name: a.download, size: blo",
-    "b.size, blob };\na.click();\n}\nfunction still() {                    // the view with its ti",
-    "me and the key of its colours\ndraw();\nconst view = $('view'), c = document.createElement('c",
-    "anvas'), d = c.getContext('2d');\nconst u = view.height/700, w = c.width = view.width, h = c.",
-    "height = view.height;\nd.drawImage(view, 0, 0);\nd.font = 15*u + 'px system-ui'; d.fillStyle ",
-    "= getComputedStyle(document.body).color;\nd.textAlign = 'right'; d.fillText($('time').textCon",
-    "tent, w - 12*u, h - 12*u);\nif (!$('key').hidden) {\nd.drawImage($('scale'), 12*u, h - 40*u, ",
-    "240*u, 10*u);\nfor (const [id, align, x] of [['least', 'left', 12], ['what', 'center', 132], ",
-    "['most', 'right', 252]]) {\nd.textAlign = align; d.fillText($(id).textContent, x*u, h - 12*u)",
-    ";\n}\n}\nc.toBlob(blob => keep(blob, '.png'));\n}\nfunction film() {                     // f",
-    "rom the first frame to the last, at the chosen pace\nif (recorder) { recorder.stop(); return;",
-    " }\nconst parts = [];\nrecorder = new MediaRecorder($('view').captureStream(30), { mimeType: ",
-    "'video/webm', videoBitsPerSecond: 8e6 });\nrecorder.ondataavailable = e => parts.push(e.data)",
-    ";\nrecorder.onstop = () => { recorder = null; $('film').textContent = 'film'; play(false);\nk",
-    "eep(new Blob(parts, { type: 'video/webm' }), '.webm'); };\n$('film').textContent = 'stop'; se",
-    "ek(0); play(true); recorder.start();\n}\nasync function beside(file) {\nconst page = document",
-    ".createElement('iframe');\npage.src = URL.createObjectURL(new Blob([await file.text()], { typ",
-    "e: 'text/html' }));\nif (second) second.remove();\n$('scene').append(second = page); document",
-    ".body.classList.add('two'); dirty = true;\n}\naddEventListener('message', e => {\nconst to = ",
-    "e.data && e.data.dem;\nif (e.data && e.data.ready) dirty = true;     // the second run has be",
-    "en read\nif (!to) return;\ndocument.body.classList.add('second');\nif (!replay.ready) return;",
-    "\nlet k = frames.findIndex(f => f.time > to.time) - 1;\nif (k === -2) k = frames.length - 1;",
-    "\nconst f = frames[Math.max(k, 0)], g = frames[Math.max(k, 0) + 1];\nplay(false); Object.assi",
-    "gn(camera, to.camera);\nseek(k < 0 ? 0 : g ? k + (to.time - f.time)/(g.time - f.time) : k);\n",
-    "});\nfunction seek(to) {\nat = Math.max(0, Math.min(frames.length - 1, to)); dirty = true;\n}",
-    "\nfunction play(on) { playing = on; $('play').textContent = on ? 'pause' : 'play'; }\nfunctio",
-    "n fit() { Object.assign(camera, JSON.parse(first)); dirty = true; }\nfunction look() {\nconst",
-    " g = head.gravity, size = [0, 1, 2].map(k => box.hi[k] - box.lo[k]);\nup = Math.hypot(...g) >",
-    " 0 ? unit(g.map(x => -x)) : head.planar ? [0, 1, 0] : [0, 0, 1];\nconst thin = [0, 1, 2].redu",
-    "ce((a, k) => size[k] < size[a] ? k : a, 0);\nconst axis = [0, 0, 0], flat = head.planar || si",
-    "ze[thin] < 0.4*Math.max(...size) &&\nMath.abs(up[thin]) < 0.5;\naxis[head.planar ? 2 : flat ?",
-    " thin : Math.abs(up[0]) < 0.5 ? 0 : 1] = 1;\nside = unit(sum(axis, up, -dot(axis, up)));\nahe",
-    "ad = cross(up, side);\nif (thin === 1 && flat) side = side.map(x => -x), ahead = ahead.map(x ",
-    "=> -x);\ncamera.yaw = flat ? (head.planar ? 0 : 0.25) : -1; camera.pitch = flat ? (head.plana",
-    "r ? 0 : 0.15)\n: 0.35;\ncamera.target = box.middle.slice();\ncamera.distance = 0.5*box.size/M",
-    "ath.tan(0.3);\nfirst = JSON.stringify(camera);\n}\nfunction hands() {\nconst view = $('view')",
-    ", down = new Map();\nlet apart = 0;\nconst move = (dx, dy) => {\nconst z = turnedTo(), x = un",
-    "it(cross(up, z)), y = cross(z, x);\nconst s = 2*Math.tan(0.3)*camera.distance/view.clientHeig",
-    "ht;\ncamera.target = sum(sum(camera.target, x, -dx*s), y, dy*s);\n};\nconst zoom = by => { ca",
-    "mera.distance = Math.max(0.01*box.size, Math.min(20*box.size,\ncamera.distance*by)); dirty = ",
-    "true; };\nview.addEventListener('pointerdown', e => { down.set(e.pointerId, [e.clientX, e.cli",
-    "entY]);\nview.setPointerCapture(e.pointerId); apart = 0; });\nfor (const end of ['pointerup',",
-    " 'pointercancel'])\nview.addEventListener(end, e => { down.delete(e.pointerId); apart = 0; })",
-    ";\nview.addEventListener('pointermove', e => {\nconst from = down.get(e.pointerId);\nif (!fro",
-    "m) return;\nconst dx = e.clientX - from[0], dy = e.clientY - from[1];\ndown.set(e.pointerId, ",
-    "[e.clientX, e.clientY]);\nif (down.size > 1) {\nconst [a, b] = [...down.values()], d = Math.h",
-    "ypot(a[0] - b[0], a[1] - b[1]);\nif (apart) zoom(apart/d);\napart = d; move(dx/2, dy/2);\n} e",
-    "lse if (e.shiftKey || e.buttons & 6) move(dx, dy);\nelse {\ncamera.yaw -= dx*0.008;\ncamera.p",
-    "itch = Math.max(-1.55, Math.min(1.55, camera.pitch + dy*0.008));\n}\ndirty = true;\n});\nview",
-    ".addEventListener('wheel', e => { e.preventDefault(); zoom(Math.exp(e.deltaY*0.001)); },\n{ p",
-    "assive: false });\nview.addEventListener('contextmenu', e => e.preventDefault());\n$('play').",
-    "onclick = () => play(!playing);\n$('at').oninput = () => { play(false); seek(+$('at').value);",
-    " };\n$('pace').onchange = () => { pace = +$('pace').value; };\n$('colour').onchange = () => {",
-    " showKey(); dirty = true; };\n$('walls').oninput = $('forces').oninput = $('cut').oninput = $",
-    "('thick').oninput = $('by').onchange = () => { dirty = true; };\n$('still').onclick = still; ",
-    "$('film').onclick = film;\n$('beside').onclick = () => $('other').click();\n$('other').onchan",
-    "ge = () => { if ($('other').files[0]) beside($('other').files[0]); };\naddEventListener('resi",
-    "ze', () => { dirty = true; });\naddEventListener('keydown', e => {\nif (/INPUT|SELECT|BUTTON|",
-    "SUMMARY/.test(e.target.tagName) && e.key !== ' ') return;\nif (/SELECT|BUTTON|SUMMARY/.test(e",
-    ".target.tagName)) return;\nconst list = $('pace'), key = { ' ': () => play(!playing), Home: (",
-    ") => seek(0),\nArrowRight: () => { play(false); seek(Math.floor(at) + 1); },\nArrowLeft: () =",
-    "> { play(false); seek(Math.ceil(at) - 1); },\nEnd: () => seek(frames.length - 1), 0: fit,\n'+",
-    "': () => { list.selectedIndex = Math.min(list.length - 1, list.selectedIndex + 1); },\n'-': (",
-    ") => { list.selectedIndex = Math.max(0, list.selectedIndex - 1); } }[e.key];\nif (!key) retur",
-    "n;\nkey(); e.preventDefault(); list.onchange();\n});\n}\nlet then = 0;\nfunction tick(ms) {\n",
-    "if (playing) {\nconst past = Math.min(0.1, (ms - then)/1000)*pace;\nconst k = Math.min(Math.f",
-    "loor(at), frames.length - 2), f = frames[k], g = frames[k + 1];\nif (!g) play(false);\nelse {",
-    "\nlet time = f.time + (at - k)*(g.time - f.time) + past, n = k;\nif (time > frames[frames.len",
-    "gth - 1].time) {\nif (recorder) recorder.stop();\ntime = frames[0].time; n = 0;\n}\nwhile (n ",
-    "< frames.length - 2 && frames[n + 1].time <= time) n++;\nat = n + Math.min(1, (time - frames[",
-    "n].time)/(frames[n + 1].time - frames[n].time || 1));\ndirty = true;\n}\n}\nthen = ms;\nif (d",
-    "irty) { dirty = false; draw(); }\nrequestAnimationFrame(tick);\n}\nfunction paces() {\nconst ",
-    "length = frames[frames.length - 1].time - frames[0].time;\nconst own = length > 0 ? length/12",
-    " : 1;      // all of it in 12 s\npace = length > 4 && length < 30 ? 1 : +own.toPrecision(1);",
-    "\nfor (const k of [0.1, 0.2, 0.5, 1, 2, 5, 10]) {\nconst o = document.createElement('option')",
-    ", p = +(k*pace).toPrecision(2);\no.value = p; o.textContent = p === 1 ? 'real time' : p < 1 ?",
-    " '1/' + +(1/p).toPrecision(2) +\n' of real time' : p + ' times real time';\no.selected = k ==",
-    "= 1; $('pace').append(o);\n}\n}\naddEventListener('DOMContentLoaded', async () => {\ntry {\nc",
-    "onst begun = performance.now();\nfor (const b of blocks('head')) head = JSON.parse(b.textCont",
-    "ent);\ndocument.title = $('title').textContent = head.title || 'Replay';\nfor (const b of blo",
-    "cks('shape')) { head.turns = 1;\nconst s = JSON.parse(b.textContent); shapes[s.id] = s; }\nfo",
-    "r (const b of blocks('wall')) { const w = JSON.parse(b.textContent); walls[w.id] = w; }\nfor ",
-    "(const b of blocks('value')) head.values.push(JSON.parse(b.textContent).name);\nfor (const [k",
-    ", b] of blocks('frame').entries()) {\ntry { decode(bytes(b.textContent)); } catch (e) { if (!",
-    "k) throw e; break; }  // cut short\nb.remove();\nif (k%20 === 19) { $('say').textContent = 'r",
-    "eading ' + (k + 1);\nawait new Promise(done => setTimeout(done)); }\n}\nif (!frames.length) t",
-    "hrow Error('no frames in this file: was dem_replay_frame_write called?');\nmeasure(); ranges(",
-    "); look(); prepare(); makePlots(); paces();\nconst names = { speed: 'speed', size: 'size', ma",
-    "terial: 'material' };\nif (head.number) names.own = head.number;\nfor (const n in names) {\nc",
-    "onst o = document.createElement('option');\no.value = n; o.textContent = names[n]; $('colour'",
-    ").append(o);\n}\n$('at').max = frames.length - 1;\nconst report = blocks('report')[0];\nif (r",
-    "eport) { $('report').hidden = false;\n$('report').querySelector('pre').textContent = report.t",
-    "extContent; }\nshowKey(); hands(); $('say').hidden = true; $('say').style.display = 'none';\n",
-    "draw(); play(frames.length > 1); requestAnimationFrame(tick);\nreplay.ready = true; replay.op",
-    "ened = performance.now() - begun;\nObject.assign(replay, { seek, play, draw, still, film, bes",
-    "ide });\nif (parent !== window) parent.postMessage({ ready: 1 }, '*');\n} catch (e) { replay.",
-    "error = $('say').textContent = String(e.message || e); }\n});\n</script>\n<!-- what follows i",
-    "s written by dem_replay_open, _frame and _close -->\n"};
+    "px 12px; overflow: auto }\n[hidden] { display: none !important }\n#side label { display: flex",
+    "; justify-content: space-between; gap: 8px; margin: 4px 0 }\n#side select, #side input { widt",
+    "h: 150px }\nfigure { margin: 10px 0 0 }\npre { font-size: 11px; overflow: auto; white-space: ",
+    "pre-wrap }\n#bar { grid-column: 1 / 3; display: flex; gap: 10px; align-items: center; padding",
+    ": 8px 12px;\nborder-top: 1px solid var(--soft) }\n#at { flex: 1; min-width: 60px } #time { mi",
+    "n-width: 9em; text-align: right }\n#scene iframe { position: absolute; right: 0; top: 0; widt",
+    "h: 50%; height: 100%; border: 0 }\n.two #view { width: 50% }\n.second { grid-template: auto 1",
+    "fr / 1fr; height: 100vh } .second #side, .second #bar { display: none }\n#say { position: abs",
+    "olute; inset: 0; display: grid; place-items: center; padding: 2em;\npointer-events: none }\n@",
+    "media (max-width: 700px) {\nbody { grid-template: auto 60vh auto auto / 1fr; height: auto }\n",
+    "h1, #bar { grid-column: 1 } #side { border: 0; grid-row: 4 } #time { min-width: 6em }\n}\n</s",
+    "tyle>\n<h1 id=\"title\">Replay</h1>\n<div id=\"scene\">\n<canvas id=\"view\" tabindex=\"0\" a",
+    "ria-label=\"The grains: drag to turn, wheel to zoom\"></canvas>\n<div id=\"key\"><canvas id=",
+    "\"scale\" width=\"256\" height=\"1\"></canvas><div><span id=\"least\"></span>\n<span id=\"wha",
+    "t\"></span><span id=\"most\"></span></div></div>\n<div id=\"say\">reading ...</div>\n</div>\n",
+    "<div id=\"side\">\n<label>colour <select id=\"colour\"></select></label>\n<label>walls <input",
+    " id=\"walls\" type=\"range\" min=\"0\" max=\"1\" step=\"0.02\" value=\"0.25\"></label>\n<labe",
+    "l>cut <select id=\"by\"><option>from the front<option>along x<option>along y<option>along z</",
+    "select></label>\n<label>cut away <input id=\"cut\" type=\"range\" min=\"0\" max=\"1\" step=\"",
+    "0.01\" value=\"0\"></label>\n<label>slice <input id=\"thick\" type=\"range\" min=\"0.01\" max",
+    "=\"1\" step=\"0.01\" value=\"1\"></label>\n<label><button id=\"still\">picture</button><butto",
+    "n id=\"film\">film</button>\n<button id=\"beside\">second run</button><input id=\"other\" typ",
+    "e=\"file\" accept=\".html\" hidden></label>\n<label id=\"links\" hidden>forces <input id=\"fo",
+    "rces\" type=\"range\" min=\"0\" max=\"1\" step=\"0.02\" value=\"0.5\"></label>\n<div id=\"wid",
+    "est\" hidden></div>\n<div id=\"plots\"></div>\n<details id=\"report\" hidden><summary>report<",
+    "/summary><pre></pre></details>\n<details><summary>keys</summary>drag: turn; shift and drag, o",
+    "r two fingers: move; wheel: zoom;\nspace: play, pause; arrows: frame by frame; home, end; + -",
+    ": pace; 0: the first view</details>\n</div>\n<div id=\"bar\">\n<button id=\"play\" aria-label",
+    "=\"play or pause\">play</button>\n<input id=\"at\" type=\"range\" min=\"0\" max=\"1\" step=\"",
+    "any\" value=\"0\" aria-label=\"time\">\n<span id=\"time\"></span>\n<select id=\"pace\" aria-l",
+    "abel=\"pace\"></select>\n</div>\n<script>\n'use strict';\nconst $ = id => document.getElement",
+    "ById(id);\nconst blocks = type => [...document.querySelectorAll('script[type=\"dem/' + type +",
+    " '\"]')];\nconst replay = window.demReplay = { frames: [], ready: false, drawn: 0, error: '' ",
+    "};\nlet head = { gravity: [0, 0, -9.81], period: [0, 0, 0], resolution: 1e-3, values: [] };\n",
+    "const shapes = {}, walls = {}, frames = replay.frames;\nconst sixBits = new Uint8Array(128);",
+    "\n[...'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/'].forEach(\n(c, i) =>",
+    " { sixBits[c.charCodeAt(0)] = i; });\nfunction bytes(text) {\nconst s = text.trim(), pad = s.",
+    "endsWith('==') ? 2 : s.endsWith('=') ? 1 : 0;\nconst out = new Uint8Array(s.length*3/4 - pad)",
+    ";\nfor (let i = 0, k = 0; i < s.length; i += 4) {\nconst v = sixBits[s.charCodeAt(i)] << 18 |",
+    " sixBits[s.charCodeAt(i + 1)] << 12 |\nsixBits[s.charCodeAt(i + 2)] << 6 | sixBits[s.charCode",
+    "At(i + 3)];\nout[k++] = v >> 16; out[k++] = v >> 8; out[k++] = v;\n}\nreturn out;\n}\nconst n",
+    "ow = { room: 0, cast: { slots: new Int32Array(0) }, poses: {}, values: [] };\nfunction grow(c",
+    "ount) {\nif (count <= now.room) return;\nconst room = Math.max(count, 2*now.room, 1024);\ncon",
+    "st more = (a, per, type) => { const b = new type(per*room); if (a) b.set(a); return b; };\nno",
+    "w.x = more(now.x, 3, Int32Array); now.radius = more(now.radius, 1, Float32Array);\nnow.speed ",
+    "= more(now.speed, 1, Uint8Array); now.turn = more(now.turn, 1, Uint32Array);\nnow.own = more(",
+    "now.own, 1, Float32Array); now.is = more(now.is, 1, Uint8Array);\nnow.material = more(now.mat",
+    "erial, 1, Uint16Array); now.shape = more(now.shape, 1, Uint16Array);\nnow.room = room;\n}\nfu",
+    "nction decode(bin) {\nconst d = new DataView(bin.buffer, bin.byteOffset, bin.byteLength);\nle",
+    "t at = 0, changed = !frames.length;\nconst varint = () => {\nlet v = 0, s = 1, b;\ndo { b = b",
+    "in[at++]; v += (b & 127)*s; s *= 128; } while (b & 128);\nreturn v;\n};\nconst real = () => {",
+    " at += 4; return d.getFloat32(at - 4, true); };\nconst time = d.getFloat64(0, true);\nat = 8;",
+    "\nfor (let n = varint(); n > 0; n--) {\nconst wall = varint(), there = bin[at++];\nnow.poses ",
+    "= { ...now.poses };\nif (there) now.poses[wall] = [real(), real(), real(), real(), real(), re",
+    "al(), real()];\nelse delete now.poses[wall];\n}\nfor (let n = varint(); n > 0; n--) { now.is[",
+    "varint()] = 0; changed = true; }\nfor (let n = varint(), slot; n > 0; n--) {\nslot = varint()",
+    ";\ngrow(slot + 1);\nnow.is[slot] = 2; changed = true;                       // new\nnow.mater",
+    "ial[slot] = varint(); now.shape[slot] = varint(); now.radius[slot] = real();\nnow.x.fill(0, 3",
+    "*slot, 3*slot + 3); now.speed[slot] = now.turn[slot] = now.own[slot] = 0;\n}\nconst before = ",
+    "now.cast;\nlet from = null;\nif (changed) {\nconst slots = [];\nfor (let s = 0; s < now.room;",
+    " s++) if (now.is[s]) slots.push(s);\nnow.cast = { slots: Int32Array.from(slots),\nradius: Flo",
+    "at32Array.from(slots, s => now.radius[s]),\nmaterial: Uint16Array.from(slots, s => now.materi",
+    "al[s]),\nshape: Uint16Array.from(slots, s => now.shape[s]) };\nconst index = new Map();\nbefo",
+    "re.slots.forEach((s, i) => index.set(s, i));\nfrom = Int32Array.from(slots, s => now.is[s] ==",
+    "= 2 || !index.has(s) ? -1 : index.get(s));\nfor (const s of slots) now.is[s] = 1;\n}\nconst s",
+    "lots = now.cast.slots, count = slots.length, q = head.resolution;\nconst f = { time, cast: no",
+    "w.cast, from, poses: now.poses, x: new Float32Array(3*count),\nspeed: new Uint8Array(count), ",
+    "turn: head.turns ? new Uint32Array(count) : null,\nown: head.number ? new Float32Array(count)",
+    " : null, values: [] };\nfor (let i = 0; i < count; i++) {\nconst s = slots[i], is = bin[at++]",
+    ";\nfor (let k = 0; k < 3; k++) {\nconst size = is >> 2*k & 3;\nif (size === 1) now.x[3*s + k]",
+    " += d.getInt8(at++);\nelse if (size === 2) { now.x[3*s + k] += d.getInt16(at, true); at += 2;",
+    " }\nelse if (size === 3) { now.x[3*s + k] += d.getInt32(at, true); at += 4; }\nf.x[3*i + k] =",
+    " now.x[3*s + k]*q;\n}\nif (is & 64) now.speed[s] = bin[at++];\nif (is & 128) {\nconst more = ",
+    "bin[at++];\nif (more & 1) { now.turn[s] = d.getUint32(at, true); at += 4; }\nif (more & 2) no",
+    "w.own[s] = real();\n}\nf.speed[i] = now.speed[s];\nif (f.turn) f.turn[i] = now.turn[s];\nif (",
+    "f.own) f.own[i] = now.own[s];\n}\nfor (let n = varint(); n > 0; n--) { const name = varint();",
+    " f.values[name] = real(); }\nif (head.contacts) {                // by slots; from: of a wall",
+    ", the contact point less the centre\nlet n = varint();\nf.links = n-- ? { a: new Int32Array(n",
+    "), b: new Int32Array(n), from: new Float32Array(3*n), force: new Uint16Array(n) }\n: frames.l",
+    "ength ? frames[frames.length - 1].links : null;\nfor (let k = 0; k < n; k++) {\nf.links.a[k] ",
+    "= varint();\nif (!(f.links.b[k] = varint())) for (let c = 0; c < 3; c++, at += 2) f.links.fro",
+    "m[3*k + c] = d.getInt16(at, true)*q;\nf.links.force[k] = d.getUint16(at, true); at += 2;\n}\n",
+    "}\nif (at !== bin.length) throw Error('frame ' + frames.length + ' has ' + (bin.length - at) ",
+    "+\n' bytes too many');\nframes.push(f);\n}\nconst speedOf = code => code ? Math.pow(2, (code ",
+    "- 128)/8) : 0;          // m/s\nconst speeds = Float64Array.from({ length: 256 }, (_, code) =",
+    "> speedOf(code));\nfunction quat(turn) {                 // three smallest, 10 bits each, and",
+    " which one is left out\nconst q = [0, 0, 0, 0], left = turn >>> 30;\nlet sum = 0;\nfor (let k",
+    " = 0, bit = 0; k < 4; k++) {\nif (k === left) continue;\nq[k] = ((turn >>> bit & 1023) - 511)",
+    "/511*Math.SQRT1_2; bit += 10; sum += q[k]*q[k];\n}\nq[left] = Math.sqrt(Math.max(0, 1 - sum))",
+    ";\nreturn q;                                                              // w x y z\n}\ncons",
+    "t cross = (a, b) => [a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]];\nc",
+    "onst dot = (a, b) => a[0]*b[0] + a[1]*b[1] + a[2]*b[2];\nconst sum = (a, b, s = 1) => [a[0] +",
+    " s*b[0], a[1] + s*b[1], a[2] + s*b[2]];\nconst unit = a => { const l = Math.hypot(...a) || 1;",
+    " return [a[0]/l, a[1]/l, a[2]/l]; };\nfunction times(p, q) {\nreturn [p[0]*q[0] - p[1]*q[1] -",
+    " p[2]*q[2] - p[3]*q[3], p[0]*q[1] + p[1]*q[0] + p[2]*q[3] - p[3]*q[2],\np[0]*q[2] - p[1]*q[3]",
+    " + p[2]*q[0] + p[3]*q[1], p[0]*q[3] + p[1]*q[2] - p[2]*q[1] + p[3]*q[0]];\n}\nfunction rotate",
+    "(q, v) {\nconst u = [q[1], q[2], q[3]], t = cross(u, v).map(x => 2*x), c = cross(u, t);\nretu",
+    "rn [v[0] + q[0]*t[0] + c[0], v[1] + q[0]*t[1] + c[1], v[2] + q[0]*t[2] + c[2]];\n}\nconst box",
+    " = { lo: [Infinity, Infinity, Infinity], hi: [-Infinity, -Infinity, -Infinity] };\nfunction r",
+    "each(p, r) {\nfor (let k = 0; k < 3; k++) {\nbox.lo[k] = Math.min(box.lo[k], p[k] - r); box.h",
+    "i[k] = Math.max(box.hi[k], p[k] + r);\n}\n}\nfunction measure() {\nconst some = [frames[0], f",
+    "rames[frames.length >> 1], frames[frames.length - 1]];\nfor (const f of some) {             /",
+    "/ grains, but for the few that flew off\nfor (let k = 0; k < 3; k++) {\nconst x = [];\nfor (l",
+    "et i = 0; i < f.cast.slots.length; i++) x.push(f.x[3*i + k]);\nx.sort((a, b) => a - b);\ncons",
+    "t out = x.length >> 8, r = Math.max(0, ...f.cast.radius.slice(0, 1000));\nif (!x.length) cont",
+    "inue;\nbox.lo[k] = Math.min(box.lo[k], x[out] - r);\nbox.hi[k] = Math.max(box.hi[k], x[x.leng",
+    "th - 1 - out] + r);\n}\nfor (const id in f.poses) {\nconst w = walls[id], p = f.poses[id];\ni",
+    "f (!w || !w.vertices || w.kind === 'profile') continue;\nfor (let i = 0; i < w.vertices.lengt",
+    "h; i += 3)\nreach(sum(rotate(p.slice(3), w.vertices.slice(i, i + 3)), p), w.radius || 0);\n}",
+    "\nfor (const id in f.poses)\nif (walls[id] && walls[id].kind === 'profile')\nfor (let i = 0, ",
+    "w = walls[id], p = f.poses[id]; i < w.vertices.length; i += 3) {\nconst v = sum(rotate(p.slic",
+    "e(3), w.vertices.slice(i, i + 3)), p);\nconst z = rotate(p.slice(3), [0, 0, 1]).map(Math.abs)",
+    ";\nfor (let k = 0; k < 3; k++) if (z[k] < 0.5) {\nbox.lo[k] = Math.min(box.lo[k], v[k]); box.",
+    "hi[k] = Math.max(box.hi[k], v[k]);\n}\n}\n}\nfor (let k = 0; k < 3; k++) if (!(box.hi[k] > bo",
+    "x.lo[k])) { box.lo[k] = -1; box.hi[k] = 1; }\nbox.middle = [0, 1, 2].map(k => (box.lo[k] + bo",
+    "x.hi[k])/2);\nbox.size = Math.hypot(...[0, 1, 2].map(k => box.hi[k] - box.lo[k]));\n}\nlet gl",
+    ", ball, egg, stone, sheet, link, colours = new Uint8Array(1024);\nconst grainShader = shape =",
+    "> [`#version 300 es\nprecision highp sampler2D;\nuniform mat4 eye, lens; uniform vec3 cutAt, ",
+    "cutBy; uniform float thick;\nuniform sampler2D wheres, colours, turns, axess;\nout vec3 ray; ",
+    "flat out vec3 middle; flat out vec4 paint; flat out float size;\nflat out mat3 body; flat out",
+    " ivec2 faces;\nvec3 about(vec4 q, vec3 v) { return v + 2.0*cross(q.yzw, cross(q.yzw, v) + q.x",
+    "*v); }\nvoid main() {\nint grain = gl_VertexID/6, k = gl_VertexID%6;           // two triangl",
+    "es each\nivec2 cell = ivec2(grain & 1023, grain >> 10);\nvec2 corner = vec2(k == 1 || k == 3 ",
+    "|| k == 4 ? 1 : -1, k == 2 || k > 3 ? 1 : -1);\nvec4 where = texelFetch(wheres, cell, 0), col",
+    "our = texelFetch(colours, cell, 0);\n${shape !== 'ball' ? `vec4 turn = texelFetch(turns, cell",
+    ", 0);\nvec3 axes = texelFetch(axess, cell, 0).xyz;` : ''}\n${shape === 'stone' ? 'faces = ive",
+    "c2(axes.yz); axes = axes.xxx;' : 'faces = ivec2(0);'}\nmiddle = (eye*vec4(where.xyz, 1)).xyz;",
+    " size = where.w; paint = colour;\n${shape !== 'ball' ? `mat3 e = mat3(eye);\nbody = mat3(e*ab",
+    "out(turn, vec3(1, 0, 0))/axes.x, e*about(turn, vec3(0, 1, 0))/axes.y,\ne*about(turn, vec3(0, ",
+    "0, 1))/axes.z);` : 'body = mat3(1);'}\nfloat d = length(middle), far = d > size ? size*d/sqrt",
+    "(d*d - size*size) : size;\nvec3 n = middle/d, u = normalize(abs(n.y) < 0.9 ? cross(n, vec3(0,",
+    " 1, 0)) :\ncross(n, vec3(1, 0, 0)));\nray = middle + far*(corner.x*u + corner.y*cross(u, n));",
+    "\ngl_Position = lens*vec4(ray, 1);\nfloat past = dot(where.xyz - cutAt, cutBy);\nif (past > 0",
+    ".0 || past < -thick) gl_Position = vec4(2, 2, 2, 1);\n}`, `#version 300 es\nprecision highp f",
+    "loat;\nuniform mat4 lens;\nprecision highp sampler2D;\nuniform sampler2D planes; uniform vec4",
+    " pale;\nin vec3 ray; flat in vec3 middle; flat in vec4 paint; flat in float size; flat in mat",
+    "3 body;\nflat in ivec2 faces;\nout vec4 pixel;\nvoid main() {\nvec3 d = normalize(ray);\n${sh",
+    "ape === 'stone' ? `vec3 o = -(middle*body), r = d*body, n = vec3(0);\nfloat t = -1e30, end = ",
+    "1e30;                            // in by one face, out by another\nfor (int k = 0; k < faces",
+    ".y; k++) {\nint cell = faces.x + k;\nvec3 face = texelFetch(planes, ivec2(cell & 1023, cell >",
+    "> 10), 0).xyz;\nfloat slope = dot(face, r), at = (1.0 - dot(face, o))/slope;\nif (slope < 0.0",
+    " && at > t) { t = at; n = face; }\nif (slope > 0.0) end = min(end, at);\n}\nif (t > end) disc",
+    "ard;\nn = normalize(body*n);` : (shape === 'egg' ? `vec3 o = -(middle*body), r = d*body;\nflo",
+    "at a = dot(r, r), b = dot(o, r), c = dot(o, o) - 1.0;` : `vec3 o = -middle, r = d;\nfloat a =",
+    " 1.0, b = dot(o, r), c = dot(o, o) - size*size;`) + `\nfloat h = b*b - a*c;\nif (h < 0.0) dis",
+    "card;\nfloat t = (-b - sqrt(h))/a;\nvec3 n = ${shape === 'egg' ? 'normalize(body*(o + t*r))' ",
+    ": '(t*d - middle)/size'};`}\nvec3 hit = t*d;\nvec4 at = lens*vec4(hit, 1);\ngl_FragDepth = 0.",
+    "5*at.z/at.w + 0.5;\nfloat light = 0.35 + 0.65*max(0.0, dot(n, normalize(vec3(-0.3, 0.5, 0.8))",
+    "));\npixel = vec4(mix(paint.rgb*light + 0.12*pow(max(0.0, n.z), 30.0), pale.rgb, pale.a), 1);",
+    "\n}`];\nconst wallShader = [`#version 300 es\nuniform mat4 eye, lens; uniform vec3 place; uni",
+    "form vec4 turn;\nin vec3 where; out vec3 seen, local;\nvoid main() {\nlocal = where;\nvec3 v ",
+    "= where + 2.0*cross(turn.yzw, cross(turn.yzw, where) + turn.x*where);\nseen = (eye*vec4(v + p",
+    "lace, 1)).xyz;\ngl_Position = lens*vec4(seen, 1);\n}`, `#version 300 es\nprecision highp floa",
+    "t;\nuniform vec4 paint; uniform vec4 hole; uniform vec2 rim;     // kind, aperture, bar, leng",
+    "th\nin vec3 seen, local; out vec4 pixel;\nvoid main() {\nfloat solid = 1.0, pitch = hole.y + ",
+    "hole.z, open = 0.0;\nif (rim.x > 0.0 && length(local.xy) > rim.x) discard;\nif (hole.x > 0.0)",
+    " {\nvec2 p = local.xy, side = vec2(pitch);\nif (hole.x == 5.0) side.x = hole.w > 0.0 ? hole.w",
+    " + hole.z : 1e9;\nif (hole.x == 2.0) side.y = 1e9;\nif (rim.y > 0.0) {\nside.y = pitch*0.8660",
+    "254;\nif (mod(floor(p.y/side.y + 0.5), 2.0) > 0.5) p.x += 0.5*pitch;\n}\np = abs(p - side*flo",
+    "or(p/side + 0.5));\nvec2 clear = hole.x == 5.0 ? vec2(hole.w > 0.0 ? hole.w : 1e9, hole.y) : ",
+    "vec2(hole.y);\nif (hole.x == 2.0) clear.y = 2e9;\nopen = hole.x == 4.0 ? step(length(p), 0.5*",
+    "hole.y) : step(p.x, 0.5*clear.x)*\nstep(p.y, 0.5*clear.y);\nfloat blur = smoothstep(0.2, 1.0,",
+    " length(fwidth(local.xy))/pitch);\nsolid = mix(1.0 - open, 1.0 - hole.y*hole.y/(pitch*pitch),",
+    " blur);\nif (solid < 0.02) discard;\n}\nvec3 n = cross(dFdx(seen), dFdy(seen));       // of a",
+    " line: perhaps nothing\npixel = vec4(paint.rgb*(0.55 + 0.45*abs(n.z)/max(length(n), 1e-30)), ",
+    "paint.a*solid);\n}`];\nconst linkShader = [`#version 300 es\nuniform mat4 eye, lens;\nin vec3",
+    " where, hue; out vec3 paint;\nvoid main() { paint = hue; gl_Position = lens*eye*vec4(where, 1",
+    "); }`, `#version 300 es\nprecision highp float;\nin vec3 paint; out vec4 pixel;\nvoid main() ",
+    "{ pixel = vec4(paint, 1); }`];\nfunction program(sources, names) {\nconst p = gl.createProgra",
+    "m();\nsources.forEach((source, k) => {\nconst s = gl.createShader(k ? gl.FRAGMENT_SHADER : gl",
+    ".VERTEX_SHADER);\ngl.shaderSource(s, source); gl.compileShader(s);\nif (!gl.getShaderParamete",
+    "r(s, gl.COMPILE_STATUS)) throw Error(gl.getShaderInfoLog(s));\ngl.attachShader(p, s);\n});\nn",
+    "ames.forEach((name, k) => gl.bindAttribLocation(p, k, name));\ngl.linkProgram(p);\nif (!gl.ge",
+    "tProgramParameter(p, gl.LINK_STATUS)) throw Error(gl.getProgramInfoLog(p));\nconst at = { p }",
+    ";\nfor (let k = 0, n = gl.getProgramParameter(p, gl.ACTIVE_UNIFORMS); k < n; k++) {\nconst na",
+    "me = gl.getActiveUniform(p, k).name;\nat[name] = gl.getUniformLocation(p, name);\n}\nreturn a",
+    "t;\n}\nconst kinds = {};                     // buffers of balls, eggs and stones\nfunction p",
+    "repare() {\ngl = $('view').getContext('webgl2', { alpha: false, preserveDrawingBuffer: true }",
+    ");\nif (!gl) throw Error('this browser has no WebGL 2, by which grains are drawn: switch it o",
+    "n, ' +\n'or take another browser');\nball = program(grainShader('ball'), []);\negg = program(",
+    "grainShader('egg'), []);\nstone = program(grainShader('stone'), []);\nsheet = program(wallSha",
+    "der, ['where']);\nlink = program(linkShader, ['where', 'hue']);\nlink.array = gl.createVertex",
+    "Array(); link.buffer = gl.createBuffer();\ngl.bindVertexArray(link.array); gl.bindBuffer(gl.A",
+    "RRAY_BUFFER, link.buffer);\nfor (let k = 0; k < 2; k++) { gl.enableVertexAttribArray(k); gl.v",
+    "ertexAttribPointer(k, 3, gl.FLOAT, false, 24, 12*k); }\nkinds.array = gl.createVertexArray();",
+    "         // empty: grains stand in textures, 1024 to a row\nfor (const kind of ['ball', 'egg'",
+    ", 'stone']) {\nconst k = kinds[kind] = { room: 0, count: 0, texture: [] };\nfor (let i = 0; i",
+    " < (kind === 'ball' ? 2 : kind === 'egg' ? 4 : 5); i++) {\nk.texture[i] = gl.createTexture();",
+    "\ngl.bindTexture(gl.TEXTURE_2D, k.texture[i]);\ngl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MI",
+    "N_FILTER, gl.NEAREST);\ngl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);\n",
+    "}\n}\ngl.bindVertexArray(null);\nconst faces = [];                             // of all poly",
+    "hedra, in texels\nfor (const id in shapes) if (shapes[id].planes) {\nshapes[id].first = faces",
+    ".length/4;\nfor (let k = 0, p = shapes[id].planes; k < p.length; k += 3) faces.push(...p.slic",
+    "e(k, k + 3), 0);\n}\nfor (const id in shapes) if (shapes[id].pieces) {   // each as its own s",
+    "hape, placed\nconst rows = [], p = shapes[id].pieces;\nfor (let k = 0; k < p.length; k += 8)",
+    "\nrows.push({ ...shapes[p[k]], at: p.slice(k + 1, k + 4), turn: p.slice(k + 4, k + 8) });\nsh",
+    "apes[id].pieces = rows;\n}\nconst rows = Math.ceil(faces.length/4096) || 1, texels = new Floa",
+    "t32Array(4096*rows);\ntexels.set(faces);\ngl.bindTexture(gl.TEXTURE_2D, kinds.stone.texture[4",
+    "]);\ngl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, rows, 0, gl.RGBA, gl.FLOAT, texels);\n",
+    "}\nfunction tessellate(w) {\nconst far = 0.75*box.size, v = w.vertices, out = [];\nconst quad",
+    " = (a, b, c, d) => out.push(...a, ...b, ...c, ...a, ...c, ...d);\nconst from = rotate([w.pose",
+    "[3], -w.pose[4], -w.pose[5], -w.pose[6]],\nsum(box.middle, w.pose, -1));     // the picture's",
+    " middle, as the wall sees it\nconst along = rotate(w.pose.slice(3), [0, 0, 1]).map(Math.abs);",
+    "\nconst half = 0.5*[0, 1, 2].reduce((s, k) => s + (box.hi[k] - box.lo[k])*along[k], 0);\nif (",
+    "w.kind === 'mesh')\nfor (const k of w.corners) out.push(v[3*k], v[3*k + 1], v[3*k + 2]);\nels",
+    "e if (w.kind === 'profile') {\nconst z = [from[2] - half, from[2] + half];\nfor (let k = 0; k",
+    " < w.corners.length; k += 2) {\nconst a = 3*w.corners[k], b = 3*w.corners[k + 1];\nquad([v[a]",
+    ", v[a + 1], z[0]], [v[b], v[b + 1], z[0]], [v[b], v[b + 1], z[1]],\n[v[a], v[a + 1], z[1]]);",
+    "\n}\n} else if (w.kind === 'cylinder') {\nconst n = 72;\nfor (let k = 0; k < n; k++) {\nconst",
+    " p = [k, (k + 1)%n].map(i => [w.radius*Math.cos(2*Math.PI*i/n),\nw.radius*Math.sin(2*Math.PI*",
+    "i/n)]);\nquad([...p[0], from[2] - half], [...p[1], from[2] - half], [...p[1], from[2] + half]",
+    ",\n[...p[0], from[2] + half]);\n}\n} else if (w.kind === 'plane' || w.kind === 'sieve') {\nco",
+    "nst disc = w.rim > 0, n = disc ? 72 : 4, r = disc ? 0.9999*w.rim : Math.SQRT2*far;\nconst [x,",
+    " y] = disc ? [0, 0] : from, rim = k => 2*Math.PI*(k%n + 0.5)/n;\nconst at = k => [x + r*Math.",
+    "cos(rim(k)), y + r*Math.sin(rim(k)), 0];\nfor (let k = 0; k < n; k++) out.push(x, y, 0, ...at",
+    "(k), ...at(k + 1));\n}\nw.count = out.length/3;\nconst edges = new Map();            // those",
+    " of one triangle alone, as lines: seen edge-on, too\nfor (let k = 0; k < out.length; k += 9)",
+    "\nfor (let i = 0; i < 3; i++) {\nconst a = out.slice(k + 3*i, k + 3*i + 3), b = out.slice(k +",
+    " (3*i + 3)%9, k + (3*i + 3)%9 + 3);\nconst [s, t] = [a.join(), b.join()], key = s < t ? s + '",
+    " ' + t : t + ' ' + s;\nedges.set(key, edges.has(key) ? 0 : [...a, ...b]);\n}\nfor (const e of",
+    " edges.values()) if (e) out.push(...e);\nw.all = out.length/3;\nw.buffer = gl.createBuffer();",
+    " w.array = gl.createVertexArray();\ngl.bindVertexArray(w.array);\ngl.bindBuffer(gl.ARRAY_BUFF",
+    "ER, w.buffer);\ngl.bufferData(gl.ARRAY_BUFFER, new Float32Array(out), gl.STATIC_DRAW);\ngl.en",
+    "ableVertexAttribArray(0); gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);\ngl.bindVertex",
+    "Array(null);\n}\nconst palette = [[78, 121, 167], [242, 142, 43], [89, 161, 79], [225, 87, 89",
+    "], [118, 183, 178],\n[237, 201, 72], [176, 122, 161], [156, 117, 95]];\nconst materials = Uin",
+    "t8Array.from(palette.flatMap(c => [...c, 255]));\nfunction viridis(t) {\nconst c = [[0.2777, ",
+    "0.1051, -0.3309, -4.6342, 6.2283, 4.7764, -5.4355],\n[0.0054, 1.4046, 0.2148, -5.7991, 14.179",
+    "9, -13.7451, 4.6459],\n[0.3341, 1.3846, 0.0951, -19.3324, 56.6906, -65.3530, 26.3124]];\nretu",
+    "rn c.map(a => 255*Math.min(1, Math.max(0, a.reduceRight((s, x) => s*t + x, 0))));\n}\nfor (le",
+    "t k = 0; k < 256; k++) colours.set([...viridis(k/255).map(Math.round), 255], 4*k);\nconst ran",
+    "ge = { speed: [0, 1], size: [0, 1], own: [0, 1] };\nfunction ranges() {\nconst count = new Fl",
+    "oat64Array(256);\nlet all = 0, low = Infinity, high = -Infinity, small = Infinity, large = -I",
+    "nfinity;\nfor (const f of frames) {\nfor (let i = 0; i < f.speed.length; i++) { count[f.speed",
+    "[i]]++; all++; }\nfor (const r of f.cast.radius) { small = Math.min(small, r); large = Math.m",
+    "ax(large, r); }\nif (f.own) for (const x of f.own) { low = Math.min(low, x); high = Math.max(",
+    "high, x); }\n}\nlet k = 255;\nfor (let over = 0; k > 1 && (over += count[k]) < 0.005*all; k--",
+    ");\nrange.speed = [0, speedOf(k)];\nconst forces = new Float64Array(65536), seen = new Set();",
+    "\nlet links = 0, strong = 65535;\nfor (const f of frames) if (f.links && !seen.has(f.links)) ",
+    "{\nseen.add(f.links); links += f.links.force.length;\nfor (const code of f.links.force) force",
+    "s[code]++;\n}\nfor (let over = 0; strong > 0 && (over += forces[strong]) <= 0.01*links; stron",
+    "g--);\nrange.force = strong; $('links').hidden = $('widest').hidden = !links;\n$('widest').te",
+    "xtContent = 'the widest and reddest line: ' + +Math.pow(2, (strong - 32768)/64).toPrecision(3",
+    ") + ' N or more';\nrange.size = [small, large > small ? large : small*1.01];\nrange.own = [lo",
+    "w, high > low ? high : low + 1];\n}\nfunction showKey() {\nconst what = $('colour').value, ke",
+    "y = $('scale').getContext('2d');\n$('key').hidden = what === 'material';\nif (what === 'mater",
+    "ial') return;\nkey.putImageData(new ImageData(new Uint8ClampedArray(colours), 256, 1), 0, 0);",
+    "\nconst [least, most] = range[what], digits = x => String(+x.toPrecision(3));\n$('least').tex",
+    "tContent = digits(least); $('most').textContent = digits(most);\n$('what').textContent = { sp",
+    "eed: 'speed (m/s)', size: 'radius (m)', own: head.number }[what];\n}\nconst camera = { yaw: -",
+    "1, pitch: 0.35, distance: 1, target: [0, 0, 0] };\nlet up, side, ahead, first, at = 0, playin",
+    "g = false, pace = 1, dirty = true;\nfunction turnedTo() {\nconst c = Math.cos(camera.pitch), ",
+    "s = Math.sin(camera.pitch);\nconst flat = sum(side.map(x => x*Math.cos(camera.yaw)), ahead, M",
+    "ath.sin(camera.yaw));\nreturn sum(flat.map(x => x*c), up, s);                    // from the ",
+    "target to the eye\n}\nfunction put(kind, n) {\nconst k = kinds[kind];\nif (n > k.room) {\nk.r",
+    "oom = 1024*Math.ceil(Math.max(n, 1.5*k.room)/1024);\nk.w = new Float32Array(4*k.room); k.c = ",
+    "new Uint8Array(4*k.room);\nif (kind !== 'ball') { k.t = new Float32Array(4*k.room); k.a = new",
+    " Float32Array(4*k.room); }\n}\nk.count = 0;\nreturn k;\n}\nfunction hues(f, what, least, most",
+    ") {\nif (f.hue && f.hue.what === what) return f.hue;\nconst cast = f.cast, of = new Uint8Arra",
+    "y(cast.slots.length), scale = 255/(most - least);\nfor (let i = 0; i < of.length; i++) {\ncon",
+    "st v = what === 'speed' ? speeds[f.speed[i]] : what === 'size' ? cast.radius[i] :\nwhat === '",
+    "own' ? f.own[i] : 0;\nof[i] = what === 'material' ? (cast.material[i] - 1 + 8)%8 :\nMath.max(",
+    "0, Math.min(255, Math.round((v - least)*scale)));\n}\nreturn f.hue = { what, of, table: what ",
+    "=== 'material' ? materials : colours };\n}\nfunction fill(f, g, part) {\nconst what = $('colo",
+    "ur').value, [least, most] = range[what] || [0, 1], cast = f.cast;\nlet balls = 0, eggs = 0, s",
+    "tones = 0;\nfor (let i = 0; i < cast.slots.length; i++) {\nconst s = shapes[cast.shape[i]];\n",
+    "if (!s) balls++; else if (s.parts) balls += s.parts.length/4;\nelse for (const piece of s.pie",
+    "ces || [s]) if (piece.axes) eggs++; else stones++;\n}\nfor (const id in f.poses) if (walls[id",
+    "] && walls[id].kind === 'grains')\nballs += walls[id].vertices.length/3;\nconst b = put('ball",
+    "', balls), e = put('egg', eggs), o = put('stone', stones), half = head.period.map(p => p/2);",
+    "\nlet n = null;\nif (g && g.from) {                  // who is who in the next frame\nn = new",
+    " Int32Array(cast.slots.length).fill(-1);\ng.from.forEach((old, i) => { if (old >= 0) n[old] =",
+    " i; });\n}\nconst fx = f.x, gx = g ? g.x : fx, hue = hues(f, what, least, most), wrap = half.",
+    "some(h => h > 0);\nconst laid = (k, at, x, y, z, size, c) => {\nconst m = 4*at;\nk.w[m] = x; ",
+    "k.w[m + 1] = y; k.w[m + 2] = z; k.w[m + 3] = size;\nk.c[m] = hue.table[c]; k.c[m + 1] = hue.t",
+    "able[c + 1]; k.c[m + 2] = hue.table[c + 2];\nk.c[m + 3] = 255;\n};\nfor (let i = 0; i < cast.",
+    "slots.length; i++) {\nconst j = !g ? -1 : n ? n[i] : i, shape = shapes[cast.shape[i]], r = ca",
+    "st.radius[i];\nconst a = 3*i, c = 4*hue.of[i];\nlet x = fx[a], y = fx[a + 1], z = fx[a + 2];",
+    "\nif (j >= 0 && part > 0) {\nconst dx = gx[3*j] - x, dy = gx[3*j + 1] - y, dz = gx[3*j + 2] -",
+    " z;\nif (!wrap || !(half[0] > 0 && Math.abs(dx) > half[0] || half[1] > 0 && Math.abs(dy) > ha",
+    "lf[1]\n|| half[2] > 0 && Math.abs(dz) > half[2])) { x += part*dx; y += part*dy; z += part*dz;",
+    " }\n}\nif (now.at) { now.at[a] = x; now.at[a + 1] = y; now.at[a + 2] = z; }\nif (!shape) { la",
+    "id(b, b.count++, x, y, z, r, c); continue; }\nlet q = quat(f.turn[i]);\nif (j >= 0 && part > ",
+    "0) {\nconst to = quat(g.turn[j]), same = q[0]*to[0] + q[1]*to[1] + q[2]*to[2] + q[3]*to[3];\n",
+    "q = q.map((x, k) => x*(1 - part) + (same < 0 ? -part : part)*to[k]);\nconst l = Math.hypot(..",
+    ".q) || 1;\nq = q.map(x => x/l);\n}\nconst scale = r/shape.radius;\nif (!shape.parts) for (con",
+    "st piece of shape.pieces || [shape]) {\nconst v = piece.at ? rotate(q, piece.at) : [0, 0, 0],",
+    " turn = piece.turn ? times(q, piece.turn) : q;\nconst size = scale*piece.radius, place = [x +",
+    " scale*v[0], y + scale*v[1], z + scale*v[2]];\nif (piece.axes) {\ne.t.set(turn, 4*e.count);\n",
+    "for (let k = 0; k < 3; k++) e.a[4*e.count + k] = piece.axes[k]*scale;\nlaid(e, e.count++, ...",
+    "place, size, c);\n} else {\no.t.set(turn, 4*o.count);\no.a.set([scale, piece.first, piece.pla",
+    "nes.length/3, 0], 4*o.count);\nlaid(o, o.count++, ...place, size, c);\n}\n} else for (let k =",
+    " 0; k < shape.parts.length; k += 4) {\nconst v = rotate(q, shape.parts.slice(k, k + 3));\nlai",
+    "d(b, b.count++, x + scale*v[0], y + scale*v[1], z + scale*v[2], scale*shape.parts[k + 3],\nc)",
+    ";\n}\n}\nfor (const id in f.poses) if (walls[id] && walls[id].kind === 'grains') {\nconst w =",
+    " walls[id], pose = f.poses[id];\nfor (let k = 0; k < w.vertices.length; k += 3) {\nconst v = ",
+    "sum(rotate(pose.slice(3), w.vertices.slice(k, k + 3)), pose), m = 4*b.count++;\nb.w.set([...v",
+    ", w.radius], m); b.c.set([150, 150, 150, 255], m);\n}\n}\nfor (const k of [b, e, o]) {\nif (!",
+    "k.count) continue;\nconst rows = Math.ceil(k.count/1024);\n[k.w, k.c, k.t, k.a].forEach((data",
+    ", i) => {\nif (!data) return;\ngl.bindTexture(gl.TEXTURE_2D, k.texture[i]);\nif (i === 1) gl.",
+    "texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 1024, rows, 0, gl.RGBA,\ngl.UNSIGNED_BYTE, data.subarr",
+    "ay(0, 4096*rows));\nelse gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, rows, 0, gl.RGBA, ",
+    "gl.FLOAT,\ndata.subarray(0, 4096*rows));\n});\n}\n}\nfunction drawLinks(f, eyeAt, eye, lens, ",
+    "left) {\nconst l = f.links, cast = f.cast, out = [], thick = +$('forces').value*(range.size[0",
+    "] + range.size[1])/2;\nif (!cast.index) { cast.index = new Map(); cast.slots.forEach((s, i) =",
+    "> cast.index.set(s, i)); }\nfor (let k = 0; k < l.a.length; k++) {\nconst i = cast.index.get(",
+    "l.a[k]), j = l.b[k] ? cast.index.get(l.b[k] - 1) : -1;\nif (i === undefined || j === undefine",
+    "d) continue;             // a grain has left since\nconst a = now.at.subarray(3*i, 3*i + 3), ",
+    "part = Math.min(1, Math.pow(2, (l.force[k] - range.force)/64));\nconst d = j < 0 ? l.from.sli",
+    "ce(3*k, 3*k + 3) : [0, 1, 2].map(c => {\nconst x = now.at[3*j + c] - a[c], period = head.peri",
+    "od[c];\nreturn period > 0 ? x - period*Math.round(x/period) : x;\n});\nconst to = sum(a, d), ",
+    "middle = sum(a, d, 0.5);\nif (left(middle)) continue;\nconst half = unit(cross(d, sum(eyeAt, ",
+    "middle, -1))).map(x => x*Math.max(0.02, part)*thick);\nconst hue = [0.1 + 0.75*part, 0.35*(1 ",
+    "- part), 0.75*(1 - part) + 0.05];\nconst c = [sum(a, half), sum(a, half, -1), sum(to, half), ",
+    "sum(to, half, -1)];\nfor (const n of [0, 1, 2, 2, 1, 3]) out.push(...c[n], ...hue);\n}\ngl.us",
+    "eProgram(link.p); gl.bindVertexArray(link.array); gl.bindBuffer(gl.ARRAY_BUFFER, link.buffer)",
+    ";\ngl.uniformMatrix4fv(link.eye, false, eye); gl.uniformMatrix4fv(link.lens, false, lens);\ng",
+    "l.bufferData(gl.ARRAY_BUFFER, new Float32Array(out), gl.STREAM_DRAW);\ngl.disable(gl.DEPTH_TE",
+    "ST); gl.drawArrays(gl.TRIANGLES, 0, out.length/6); gl.enable(gl.DEPTH_TEST);\nreplay.links = ",
+    "out.length/36;\n}\nfunction draw() {\nconst canvas = $('view'), ratio = Math.min(2, window.de",
+    "vicePixelRatio || 1);\nconst width = Math.round(canvas.clientWidth*ratio);\nconst height = Ma",
+    "th.round(canvas.clientHeight*ratio);\nif (canvas.width !== width || canvas.height !== height)",
+    " { canvas.width = width;\ncanvas.height = height; }\nconst k = Math.min(Math.floor(at), frame",
+    "s.length - 1), f = frames[k], g = frames[k + 1];\nconst part = g ? at - k : 0, time = f.time ",
+    "+ (g ? part*(g.time - f.time) : 0);\nconst back = turnedTo(), z = back, x = unit(cross(up, z)",
+    "), y = cross(z, x);\nconst eyeAt = sum(camera.target, back, camera.distance);\nconst eye = ne",
+    "w Float32Array([x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0,\n-dot(x, eyeAt",
+    "), -dot(y, eyeAt), -dot(z, eyeAt), 1]);\nconst near = Math.max(0.01*camera.distance, camera.d",
+    "istance - 1.5*box.size);\nconst last = camera.distance + 2*box.size, open = Math.tan(0.3);\nc",
+    "onst lens = new Float32Array([height/width/open, 0, 0, 0, 0, 1/open, 0, 0,\n0, 0, (last + nea",
+    "r)/(near - last), -1, 0, 0, 2*last*near/(near - last), 0]);\nconst dark = matchMedia('(prefer",
+    "s-color-scheme: dark)').matches;\ngl.viewport(0, 0, width, height);\ngl.clearColor(...(dark ?",
+    " [0.083, 0.094, 0.106] : [1, 1, 1]), 1);\ngl.depthMask(true);\ngl.clear(gl.COLOR_BUFFER_BIT |",
+    " gl.DEPTH_BUFFER_BIT);\ngl.enable(gl.DEPTH_TEST); gl.disable(gl.BLEND);\nconst lines = f.link",
+    "s && +$('forces').value > 0;\nnow.at = lines ? new Float32Array(f.x.length) : null;\nfill(f, ",
+    "g, part);\nconst cut = +$('cut').value, slice = +$('thick').value, by = $('by').selectedIndex",
+    " - 1;\nconst across = by < 0 ? box.size : box.hi[by] - box.lo[by], on = cut > 0 || slice < 1;",
+    "\nconst cutBy = by < 0 ? z : [0, 1, 2].map(k => +(k === by));\nconst cutAt = sum(box.middle, ",
+    "cutBy, (0.5 - cut)*across);\nfor (const [kind, p] of [['ball', ball], ['egg', egg], ['stone',",
+    " stone]]) {\nif (!kinds[kind].count) continue;\ngl.useProgram(p.p);\ngl.uniformMatrix4fv(p.ey",
+    "e, false, eye); gl.uniformMatrix4fv(p.lens, false, lens);\ngl.uniform3fv(p.cutAt, cutAt); gl.",
+    "uniform3fv(p.cutBy, on ? cutBy : [0, 0, 0]);\ngl.uniform1f(p.thick, slice < 1 ? slice*across ",
+    ": 1e30);\ngl.uniform4f(p.pale, ...(dark ? [0.083, 0.094, 0.106] : [1, 1, 1]), lines ? 0.75 : ",
+    "0);\n['wheres', 'colours', 'turns', 'axess', 'planes'].forEach((name, i) => {\nif (!p[name]) ",
+    "return;\ngl.activeTexture(gl.TEXTURE0 + i);\ngl.bindTexture(gl.TEXTURE_2D, kinds[kind].textur",
+    "e[i]);\ngl.uniform1i(p[name], i);\n});\ngl.activeTexture(gl.TEXTURE0);\ngl.bindVertexArray(ki",
+    "nds.array);\ngl.drawArrays(gl.TRIANGLES, 0, 6*kinds[kind].count);\n}\nif (lines) drawLinks(f,",
+    " eyeAt, eye, lens, p => {\nconst past = dot(sum(p, cutAt, -1), cutBy);\nreturn on && (past > ",
+    "0 || slice < 1 && past < -slice*across);\n});\ngl.useProgram(sheet.p);\ngl.enable(gl.BLEND); ",
+    "gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false);\ngl.uniformMatrix4fv",
+    "(sheet.eye, false, eye); gl.uniformMatrix4fv(sheet.lens, false, lens);\nconst solid = +$('wal",
+    "ls').value, shade = dark ? [0.75, 0.8, 0.86] : [0.35, 0.4, 0.46];\ngl.depthMask(solid > 0.98)",
+    ";\nfor (const id in f.poses) {\nconst w = walls[id];\nif (!w || w.kind === 'grains' || !solid",
+    ") continue;\nlet pose = f.poses[id];\nconst to = g && g.poses[id];\nif (to && part > 0) {    ",
+    "         // half way: along the chord, turned on the shorter way\nlet same = 0, q = [];\nfor ",
+    "(let i = 3; i < 7; i++) same += pose[i]*to[i];\nq = pose.map((v, i) => v*(1 - part) + (i > 2 ",
+    "&& same < 0 ? -part : part)*to[i]);\nconst l = Math.hypot(q[3], q[4], q[5], q[6]) || 1;\npose",
+    " = q.map((v, i) => i > 2 ? v/l : v);\n}\nif (!w.array) { w.pose = pose; tessellate(w); }\ncon",
+    "st weight = w.kind === 'plane' ? 0.5 : w.kind === 'sieve' ? 2 : 1;\ngl.uniform4f(sheet.paint,",
+    " ...shade, Math.min(1, solid*weight));\ngl.uniform4f(sheet.hole, ...(w.hole || [0, 1, 1, 0]))",
+    ";\ngl.uniform2f(sheet.rim, w.rim || 0, w.staggered || 0);\ngl.uniform3fv(sheet.place, pose.sl",
+    "ice(0, 3)); gl.uniform4fv(sheet.turn, pose.slice(3));\ngl.bindVertexArray(w.array);\ngl.drawA",
+    "rrays(gl.TRIANGLES, 0, w.count);\ngl.uniform4f(sheet.paint, ...shade, Math.min(1, 3*solid));",
+    "\ngl.drawArrays(gl.LINES, w.count, w.all - w.count);\n}\ngl.bindVertexArray(null); gl.depthMa",
+    "sk(true);\n$('time').textContent = time.toPrecision(4) + ' s';\n$('at').value = at;\nplot(tim",
+    "e);\nif (second) second.contentWindow.postMessage({ dem: { time, camera } }, '*');\nreplay.dr",
+    "awn++; replay.at = at; replay.time = time;\nreplay.project = p => {             // where a pl",
+    "ace is in the picture, pixels from below\nconst e = sum(p, eyeAt, -1), d = -dot(z, e);\nretur",
+    "n [width/2*(1 + dot(x, e)/d*height/width/open), height/2*(1 + dot(y, e)/d/open), d];\n};\n}\n",
+    "const plots = [];\nconst short = v => { const s = String(+v.toPrecision(3)); return s.length ",
+    "< 8 ? s : v.toExponential(1); };\nfunction ticks(from, to) {\nconst ten = Math.pow(10, Math.f",
+    "loor(Math.log10((to - from)/2))), out = [];\nconst step = ten*[5, 2, 1].find(k => k*ten <= (t",
+    "o - from)/2);\nfor (let k = Math.ceil(from/step - 1e-9); k*step <= to + 1e-9*step; k++) out.p",
+    "ush(k*step);\nreturn out.map(t => +t.toPrecision(12));\n}\nfunction valueAt(q, t) {          ",
+    "    // of a curve, between its points; nothing outside\nconst i = q.t.findIndex(s => s >= t);",
+    "\nif (i < 0 || !i && t < q.t[0]) return undefined;\nreturn i ? q.v[i - 1] + (t - q.t[i - 1])/",
+    "(q.t[i] - q.t[i - 1])*(q.v[i] - q.v[i - 1]) : q.v[0];\n}\nfunction label(p, d, X, Y, [left, r",
+    "ight, top, foot], from, to) {\nconst taken = [];\nfor (const q of p.curves) {\nconst half = d",
+    ".measureText(q.name).width/2;\nlet best = { room: -Infinity, at: [left + half, top + 12*taken",
+    ".length] };\nfor (let s = 0; s <= 20; s++)\nfor (const off of [-9, 9]) {\nconst t = from + s/",
+    "20*(to - from), v = valueAt(q, t), x = X(t), y = Y(v) + off;\nif (v === undefined || x - half",
+    " < left || x + half > right || y < top || y > foot) continue;\nlet room = 60;\nfor (const o o",
+    "f p.curves) for (let u = -2; u < 3; u++) {\nconst other = valueAt(o, t + u/2*half*(to - from)",
+    "/(X(to) - X(from)));\nif (other !== undefined) room = Math.min(room, Math.abs(Y(other) - y)*(",
+    "o === q ? 4 : 1));\n}\nfor (const [a, b, c] of taken) if (Math.abs(x - a) < half + c) room = ",
+    "Math.min(room, Math.abs(y - b) - 6);\nif (room > best.room) best = { room, at: [x, y] };\n}\n",
+    "q.label = best.at;\ntaken.push([...best.at, half]);\n}\n}\nfunction plot(time) {\nconst from ",
+    "= frames[0].time, to = Math.max(frames[frames.length - 1].time, from + 1e-9);\nconst ink = ge",
+    "tComputedStyle(document.body).color, ratio = window.devicePixelRatio || 1;\nconst soft = getC",
+    "omputedStyle(document.documentElement).getPropertyValue('--soft');\nfor (const p of plots) {",
+    "\nconst c = p.canvas, d = c.getContext('2d'), w = c.clientWidth, h = c.clientHeight;\nif (c.w",
+    "idth !== Math.round(w*ratio)) { c.width = Math.round(w*ratio);\nc.height = Math.round(h*ratio",
+    "); }\nd.setTransform(ratio, 0, 0, ratio, 0, 0);\nd.clearRect(0, 0, w, h);\nconst top = 8, foo",
+    "t = h - 18, left = 58;\nconst X = t => left + (w - left - 8)*(t - from)/(to - from);\nconst Y",
+    " = v => foot - (foot - top)*(p.most > p.least ? (v - p.least)/(p.most - p.least) : 0.5);\ncon",
+    "st line = (x0, y0, x1, y1) => { d.beginPath(); d.moveTo(x0, y0); d.lineTo(x1, y1); d.stroke()",
+    "; };\nd.font = '11px system-ui'; d.fillStyle = ink; d.strokeStyle = soft;\nline(left, foot, w",
+    " - 8, foot); line(left, top, left, foot);\nd.textAlign = 'right'; d.textBaseline = 'middle';",
+    "\nfor (const v of p.most > p.least ? ticks(p.least, p.most) : [p.most]) {\nline(left - 3, Y(v",
+    "), left, Y(v));\nd.fillText(short(v), left - 5, Y(v));\n}\nd.textAlign = 'center';\nticks(fro",
+    "m, to).forEach((t, i, all) => {\nline(X(t), top, X(t), foot + 3);\nd.fillText(t + (i === all.",
+    "length - 1 ? ' s' : ''), Math.min(X(t), w - 16), h - 7);\n});\nconst colour = k => 'rgb(' + p",
+    "alette[k%palette.length] + ')';\np.curves.forEach((q, k) => {\nd.strokeStyle = colour(k); d.b",
+    "eginPath();\nq.t.forEach((t, i) => i ? d.lineTo(X(t), Y(q.v[i])) : d.moveTo(X(t), Y(q.v[i])))",
+    ";\nd.stroke();\n});\nif (p.width !== w) { p.width = w; label(p, d, X, Y, [left + 2, w - 4, to",
+    "p + 5, foot - 6], from, to); }\nd.lineWidth = 3; d.strokeStyle = getComputedStyle(document.bo",
+    "dy).backgroundColor;\np.curves.forEach((q, k) => { d.fillStyle = colour(k);\nd.strokeText(q.n",
+    "ame, ...q.label); d.fillText(q.name, ...q.label); });\nd.lineWidth = 1;\nd.strokeStyle = ink;",
+    " d.globalAlpha = 0.5;\nline(X(time), top, X(time), foot);\nd.globalAlpha = 1;\n}\n}\nfunction",
+    " makePlots() {\nhead.values.forEach((name, k) => {\nconst unit = (/\\(([^()]*)\\)\\s*$/.exec(",
+    "name) || [])[1], q = { name, t: [], v: [] };\nfor (const f of frames) if (f.values[k] !== und",
+    "efined && isFinite(f.values[k])) {\nq.t.push(f.time); q.v.push(f.values[k]);\n}\nif (!q.t.len",
+    "gth) return;\nlet p = plots.find(other => unit && other.unit === unit);\nif (!p) {\nconst fig",
+    "ure = document.createElement('figure');\nplots.push(p = { unit, curves: [], least: Infinity, ",
+    "most: -Infinity,\ncanvas: document.createElement('canvas') });\np.canvas.setAttribute('role',",
+    " 'img');\nfigure.append(p.canvas); $('plots').append(figure);\n}\np.curves.push(q);\nfor (con",
+    "st v of q.v) { p.least = Math.min(p.least, v); p.most = Math.max(p.most, v); }\np.canvas.setA",
+    "ttribute('aria-label', p.curves.map(c => c.name).join(', ') + ' over time');\np.canvas.style.",
+    "height = 120 + 15*p.curves.length + 'px';\n});\n}\nlet second = null, recorder = null;\nfunct",
+    "ion keep(blob, end) {\nconst a = document.createElement('a');\na.href = URL.createObjectURL(b",
+    "lob);\na.download = (document.title.replace(/[^\\w.-]+/g, '_') || 'replay') + end;\nreplay.ke",
+    "pt = { name: a.download, size: blob.size, blob };\na.click();\n}\nfunction still() {         ",
+    "           // the view with its time and the key of its colours\ndraw();\nconst view = $('vie",
+    "w'), c = document.createElement('canvas'), d = c.getContext('2d');\nconst u = view.height/700",
+    ", w = c.width = view.width, h = c.height = view.height;\nd.drawImage(view, 0, 0);\nd.font = 1",
+    "5*u + 'px system-ui'; d.fillStyle = getComputedStyle(document.body).color;\nd.textAlign = 'ri",
+    "ght'; d.fillText($('time').textContent, w - 12*u, h - 12*u);\nif (!$('key').hidden) {\nd.draw",
+    "Image($('scale'), 12*u, h - 40*u, 240*u, 10*u);\nfor (const [id, align, x] of [['least', 'lef",
+    "t', 12], ['what', 'center', 132], ['most', 'right', 252]]) {\nd.textAlign = align; d.fillText",
+    "($(id).textContent, x*u, h - 12*u);\n}\n}\nc.toBlob(blob => keep(blob, '.png'));\n}\nfunction",
+    " film() {                     // from the first frame to the last, at the chosen pace\nif (re",
+    "corder) { recorder.stop(); return; }\nconst parts = [];\nrecorder = new MediaRecorder($('view",
+    "').captureStream(30), { mimeType: 'video/webm', videoBitsPerSecond: 8e6 });\nrecorder.ondataa",
+    "vailable = e => parts.push(e.data);\nrecorder.onstop = () => { recorder = null; $('film').tex",
+    "tContent = 'film'; play(false);\nkeep(new Blob(parts, { type: 'video/webm' }), '.webm'); };\n",
+    "$('film').textContent = 'stop'; seek(0); play(true); recorder.start();\n}\nasync function bes",
+    "ide(file) {\nconst page = document.createElement('iframe');\npage.src = URL.createObjectURL(n",
+    "ew Blob([await file.text()], { type: 'text/html' }));\nif (second) second.remove();\n$('scene",
+    "').append(second = page); document.body.classList.add('two'); dirty = true;\n}\naddEventListe",
+    "ner('message', e => {\nconst to = e.data && e.data.dem;\nif (e.data && e.data.ready) dirty = ",
+    "true;     // the second run has been read\nif (!to) return;\ndocument.body.classList.add('sec",
+    "ond');\nif (!replay.ready) return;\nlet k = frames.findIndex(f => f.time > to.time) - 1;\nif ",
+    "(k === -2) k = frames.length - 1;\nconst f = frames[Math.max(k, 0)], g = frames[Math.max(k, 0",
+    ") + 1];\nplay(false); Object.assign(camera, to.camera);\nseek(k < 0 ? 0 : g ? k + (to.time - ",
+    "f.time)/(g.time - f.time) : k);\n});\nfunction seek(to) {\nat = Math.max(0, Math.min(frames.l",
+    "ength - 1, to)); dirty = true;\n}\nfunction play(on) { playing = on; $('play').textContent = ",
+    "on ? 'pause' : 'play'; }\nfunction fit() { Object.assign(camera, JSON.parse(first)); dirty = ",
+    "true; }\nfunction look() {\nconst g = head.gravity, size = [0, 1, 2].map(k => box.hi[k] - box",
+    ".lo[k]);\nup = Math.hypot(...g) > 0 ? unit(g.map(x => -x)) : head.planar ? [0, 1, 0] : [0, 0,",
+    " 1];\nconst thin = [0, 1, 2].reduce((a, k) => size[k] < size[a] ? k : a, 0);\nconst axis = [0",
+    ", 0, 0], flat = head.planar || size[thin] < 0.4*Math.max(...size) &&\nMath.abs(up[thin]) < 0.",
+    "5;\naxis[head.planar ? 2 : flat ? thin : Math.abs(up[0]) < 0.5 ? 0 : 1] = 1;\nside = unit(sum",
+    "(axis, up, -dot(axis, up)));\nahead = cross(up, side);\nif (thin === 1 && flat) side = side.m",
+    "ap(x => -x), ahead = ahead.map(x => -x);\ncamera.yaw = flat ? (head.planar ? 0 : 0.25) : -1; ",
+    "camera.pitch = flat ? (head.planar ? 0 : 0.15)\n: 0.35;\ncamera.target = box.middle.slice();",
+    "\ncamera.distance = 0.5*box.size/Math.tan(0.3);\nfirst = JSON.stringify(camera);\n}\nfunction",
+    " hands() {\nconst view = $('view'), down = new Map();\nlet apart = 0;\nconst move = (dx, dy) ",
+    "=> {\nconst z = turnedTo(), x = unit(cross(up, z)), y = cross(z, x);\nconst s = 2*Math.tan(0.",
+    "3)*camera.distance/view.clientHeight;\ncamera.target = sum(sum(camera.target, x, -dx*s), y, d",
+    "y*s);\n};\nconst zoom = by => { camera.distance = Math.max(0.01*box.size, Math.min(20*box.siz",
+    "e,\ncamera.distance*by)); dirty = true; };\nview.addEventListener('pointerdown', e => { down.",
+    "set(e.pointerId, [e.clientX, e.clientY]);\nview.setPointerCapture(e.pointerId); apart = 0; })",
+    ";\nfor (const end of ['pointerup', 'pointercancel'])\nview.addEventListener(end, e => { down.",
+    "delete(e.pointerId); apart = 0; });\nview.addEventListener('pointermove', e => {\nconst from ",
+    "= down.get(e.pointerId);\nif (!from) return;\nconst dx = e.clientX - from[0], dy = e.clientY ",
+    "- from[1];\ndown.set(e.pointerId, [e.clientX, e.clientY]);\nif (down.size > 1) {\nconst [a, b",
+    "] = [...down.values()], d = Math.hypot(a[0] - b[0], a[1] - b[1]);\nif (apart) zoom(apart/d);",
+    "\napart = d; move(dx/2, dy/2);\n} else if (e.shiftKey || e.buttons & 6) move(dx, dy);\nelse {",
+    "\ncamera.yaw -= dx*0.008;\ncamera.pitch = Math.max(-1.55, Math.min(1.55, camera.pitch + dy*0.",
+    "008));\n}\ndirty = true;\n});\nview.addEventListener('wheel', e => { e.preventDefault(); zoom",
+    "(Math.exp(e.deltaY*0.001)); },\n{ passive: false });\nview.addEventListener('contextmenu', e ",
+    "=> e.preventDefault());\n$('play').onclick = () => play(!playing);\n$('at').oninput = () => {",
+    " play(false); seek(+$('at').value); };\n$('pace').onchange = () => { pace = +$('pace').value;",
+    " };\n$('colour').onchange = () => { showKey(); dirty = true; };\n$('walls').oninput = $('forc",
+    "es').oninput = $('cut').oninput = $('thick').oninput = $('by').onchange = () => { dirty = tru",
+    "e; };\n$('still').onclick = still; $('film').onclick = film;\n$('beside').onclick = () => $('",
+    "other').click();\n$('other').onchange = () => { if ($('other').files[0]) beside($('other').fi",
+    "les[0]); };\naddEventListener('resize', () => { dirty = true; });\naddEventListener('keydown'",
+    ", e => {\nif (/INPUT|SELECT|BUTTON|SUMMARY/.test(e.target.tagName) && e.key !== ' ') return;",
+    "\nif (/SELECT|BUTTON|SUMMARY/.test(e.target.tagName)) return;\nconst list = $('pace'), key = ",
+    "{ ' ': () => play(!playing), Home: () => seek(0),\nArrowRight: () => { play(false); seek(Math",
+    ".floor(at) + 1); },\nArrowLeft: () => { play(false); seek(Math.ceil(at) - 1); },\nEnd: () => ",
+    "seek(frames.length - 1), 0: fit,\n'+': () => { list.selectedIndex = Math.min(list.length - 1,",
+    " list.selectedIndex + 1); },\n'-': () => { list.selectedIndex = Math.max(0, list.selectedInde",
+    "x - 1); } }[e.key];\nif (!key) return;\nkey(); e.preventDefault(); list.onchange();\n});\n}\n",
+    "let then = 0;\nfunction tick(ms) {\nif (playing) {\nconst past = Math.min(0.1, (ms - then)/10",
+    "00)*pace;\nconst k = Math.min(Math.floor(at), frames.length - 2), f = frames[k], g = frames[k",
+    " + 1];\nif (!g) play(false);\nelse {\nlet time = f.time + (at - k)*(g.time - f.time) + past, ",
+    "n = k;\nif (time > frames[frames.length - 1].time) {\nif (recorder) recorder.stop();\ntime = ",
+    "frames[0].time; n = 0;\n}\nwhile (n < frames.length - 2 && frames[n + 1].time <= time) n++;\n",
+    "at = n + Math.min(1, (time - frames[n].time)/(frames[n + 1].time - frames[n].time || 1));\ndi",
+    "rty = true;\n}\n}\nthen = ms;\nif (dirty) { dirty = false; draw(); }\nrequestAnimationFrame(t",
+    "ick);\n}\nfunction paces() {\nconst length = frames[frames.length - 1].time - frames[0].time;",
+    "\nconst own = length > 0 ? length/12 : 1;      // all of it in 12 s\npace = length > 4 && len",
+    "gth < 30 ? 1 : +own.toPrecision(1);\nfor (const k of [0.1, 0.2, 0.5, 1, 2, 5, 10]) {\nconst o",
+    " = document.createElement('option'), p = +(k*pace).toPrecision(2);\no.value = p; o.textConten",
+    "t = p === 1 ? 'real time' : p < 1 ? '1/' + +(1/p).toPrecision(2) +\n' of real time' : p + ' t",
+    "imes real time';\no.selected = k === 1; $('pace').append(o);\n}\n}\naddEventListener('DOMCont",
+    "entLoaded', async () => {\ntry {\nconst begun = performance.now();\nfor (const b of blocks('h",
+    "ead')) head = JSON.parse(b.textContent);\ndocument.title = $('title').textContent = head.titl",
+    "e || 'Replay';\nfor (const b of blocks('shape')) { head.turns = 1;\nconst s = JSON.parse(b.te",
+    "xtContent); shapes[s.id] = s; }\nfor (const b of blocks('wall')) { const w = JSON.parse(b.tex",
+    "tContent); walls[w.id] = w; }\nfor (const b of blocks('value')) head.values.push(JSON.parse(b",
+    ".textContent).name);\nfor (const [k, b] of blocks('frame').entries()) {\ntry { decode(bytes(b",
+    ".textContent)); } catch (e) { if (!k) throw e; break; }  // cut short\nb.remove();\nif (k%20 ",
+    "=== 19) { $('say').textContent = 'reading ' + (k + 1);\nawait new Promise(done => setTimeout(",
+    "done)); }\n}\nif (!frames.length) throw Error('no frames in this file: was dem_replay_frame_w",
+    "rite called?');\nmeasure(); ranges(); look(); prepare(); makePlots(); paces();\nconst names =",
+    " { speed: 'speed', size: 'size', material: 'material' };\nif (head.number) names.own = head.n",
+    "umber;\nfor (const n in names) {\nconst o = document.createElement('option');\no.value = n; o",
+    ".textContent = names[n]; $('colour').append(o);\n}\n$('at').max = frames.length - 1;\nconst r",
+    "eport = blocks('report')[0];\nif (report) { $('report').hidden = false;\n$('report').querySel",
+    "ector('pre').textContent = report.textContent; }\nshowKey(); hands(); $('say').hidden = true;",
+    " $('say').style.display = 'none';\ndraw(); play(frames.length > 1); requestAnimationFrame(tic",
+    "k);\nreplay.ready = true; replay.opened = performance.now() - begun;\nObject.assign(replay, {",
+    " seek, play, draw, still, film, beside });\nif (parent !== window) parent.postMessage({ ready",
+    ": 1 }, '*');\n} catch (e) { replay.error = $('say').textContent = String(e.message || e); }\n",
+    "});\n</script>\n<!-- what follows is written by dem_replay_open, _frame and _close -->\n"};
 /* viewer: end */
 
 /* ---------------------------------------------------------------------------------------------
@@ -43441,7 +43555,8 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     if (r->desc.number_fn) {
         id.slot = (uint32_t)s + 1;
         id.generation = one->generation;
-        own = (float)r->desc.number_fn(r->world, id, r->desc.user);
+        DEMI_USER(r->world, "dem_replay_frame_write", 1,
+                  own = (float)r->desc.number_fn(r->world, id, r->desc.user))
     } else if (r->group >= 0) own = (float)(r->world->bodies.groups[i] >> r->group & 1);
     else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
     if (told != one->speed) flags |= 64;
@@ -43530,7 +43645,7 @@ static dem_result demi_film_check(dem_replay *r, const char *call) {
 DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
     if (!r || demi_null_write(r->world, __func__, r, "replay")) return DEM_ERROR_ARGUMENT;
     dem_world *w = r->world;
-    const demi_calling was = w->look.calling;
+    demi_calling was;
     double time;
     uint32_t values = 0;
     int s, k;
@@ -43542,7 +43657,7 @@ DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
         return demi_film_check(r, __func__);
     }
     demi_finish(w);
-    demi_calls(w, __func__, 1);
+    was = demi_calls(w, __func__, 1);
     const dem_bodies b = dem_bodies_get(w);
     if (!(r->resolution > 0)) demi_film_resolve(r, &b);
     for (; r->shape_count < w->shape_count; r->shape_count++)

@@ -1181,7 +1181,8 @@ class MotionKind(enum.IntEnum):
     TRANSLATING = 1
     # at `speed` about `axis` through `point`, right-handed
     ROTATING = 2
-    # displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start
+    # displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start. If sin(phase) is not
+    # 0, only with a ramp or before the first step: the wall would jump
     OSCILLATING = 3
     # as `function` says
     USER = 4

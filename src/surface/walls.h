@@ -686,7 +686,7 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
         (w->clock.steps || motion->start > w->clock.time))
         return demi_refuse(w, "dem_wall_motion_set", "wall %d would jump by %.3g m (amplitude "
                            "sin(phase)) as its oscillation begins, must be 0 after the first step: "
-                           "it would throw the grains that it meets; set motion.ramp, or phase 0",
+                           "it would throw the grains in its way; set motion.ramp, or phase 0",
                            (int)id.id, (double)motion->amplitude*
                            demi_sin((double)motion->phase));
     if (motion->kind == DEM_MOTION_USER && !motion->function)

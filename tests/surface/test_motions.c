@@ -302,7 +302,7 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("an oscillation with a phase is refused where the wall would jump, and a ramp or a fresh world lets it begin") {
+    TEST("a wall never jumps into an oscillation with a phase: it needs a ramp or a world before its first step") {
         int k, stepped, later, ramped;
         for (k = 0; k < 8; k++)
             for (stepped = 0; stepped < 2; stepped++)
