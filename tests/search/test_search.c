@@ -276,7 +276,8 @@ static dem_search mix_chosen(double ratio, double share) {
         CHECK_STR(text, chosen == DEM_SEARCH_HIERARCHICAL ? "hierarchical grid"
                   : "uniform grid");
         if (chosen == DEM_SEARCH_HIERARCHICAL) CHECK_STR(text, "levels for radii 1 : ");
-        if (ratio > 2.5) CHECK_STR(text, "chosen: about");
+        if (ratio > 2.5) CHECK_STR(text, chosen == DEM_SEARCH_HIERARCHICAL ? "chosen: hierarchical grid; distance tests"
+                                   : "chosen: uniform grid; distance tests");
         fclose(out);
     }
     dem_world_destroy(world);
