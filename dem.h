@@ -18757,9 +18757,39 @@ typedef struct demi_patch {
     dem_real couple;               /* m: moment about the normal, over the force */
     double force;                  /* m2: integral of u n */
 } demi_patch;
-/* Sets the patch of a pressure. Returns 0 if it has no force. The directions of the spread are
-   arbitrary but stay the same from step to step. */
-static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
+/* Returns a unit vector across n: the direction in which the pressure, of second moments M, is
+   spread most. Orientations `a` and, of a pair, `b` of the bodies decide where it is spread alike
+   in all directions, and its sign. It therefore rotates with the bodies and does not depend on the
+   axes of the world, nor on which of two bodies comes first. */
+static demi_d3 demi_patch_along(const double *M, demi_d3 n, const dem_quat *a, const dem_quat *b) {
+    const demi_d3 t = demi_d3_unit(demi_d3_cross(n, fabs(n.x) < 0.6 ? demi_d(1, 0, 0)
+                                                                    : demi_d(0, 1, 0)));
+    const demi_d3 e = demi_d3_cross(t, n), Mt = demi_d3_rotate(M, t), Me = demi_d3_rotate(M, e);
+    const double hint = 1e-4*(M[0] + M[4] + M[8]);
+    double c = demi_d3_dot(e, Me) - demi_d3_dot(t, Mt), s = 2*demi_d3_dot(e, Mt), r;
+    demi_d3 way = demi_d(0, 0, 0), along;
+    double R[9];
+    int k, i;
+    for (k = 0; k < (b ? 2 : 1); k++) {
+        demi_rotation_of(k ? *b : *a, R);
+        way = demi_d3_add(way, demi_d3_rotate(R, demi_d(0.3301, 0.5563, 0.7626)));
+        for (i = 1; i < 3; i++) {               /* weights 0, 1 and 2 of the body's axes */
+            const demi_d3 axis = demi_d(R[i], R[3 + i], R[6 + i]);
+            const double x = demi_d3_dot(e, axis), y = demi_d3_dot(t, axis);
+            c += i*hint*(x*x - y*y);
+            s += i*hint*2*x*y;
+        }
+    }
+    r = sqrt(c*c + s*s);                        /* (c, s) is at twice the angle */
+    along = c > 0 ? demi_d3_plus(demi_d3_scale(e, r + c), s, t)
+                  : demi_d3_plus(demi_d3_scale(e, s), r - c, t);
+    if (!(demi_d3_length(along) > 0)) return e;
+    return demi_d3_scale(demi_d3_unit(along), demi_d3_dot(along, way) < 0 ? -1 : 1);
+}
+/* Sets the patch of a pressure, from the orientations of both bodies (b: null for a wall). Returns
+   0 if it has no force. */
+static int demi_pressure_patch(const demi_pressure *s, const dem_quat *a, const dem_quat *b,
+                               demi_patch *out) {
     const double *m = s->wide, F = demi_d3_length(s->force), sum2 = s->sum*s->sum;
     demi_d3 n, e, t, Ce, Ct;
     double C[6], M[9], ee, tt, et, root, size;
@@ -18773,8 +18803,8 @@ static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
     for (k = 0; k < 6; k++) C[k] = m[k]/s->sum - C[k]/sum2;
     for (k = 0; k < 6; k++) M[3*demi_sym_row[k] + demi_sym_column[k]] = C[k];
     M[3] = C[3]; M[6] = C[4]; M[7] = C[5];
-    t = demi_d3_unit(demi_d3_cross(n, demi_d(0.3301, 0.5563, 0.7626)));
-    e = demi_d3_cross(t, n);
+    e = demi_patch_along(M, n, a, b);
+    t = demi_d3_cross(n, e);
     Ce = demi_d3_rotate(M, e);
     Ct = demi_d3_rotate(M, t);
     ee = DEMI_MAX(demi_d3_dot(e, Ce), 0);
@@ -19227,30 +19257,45 @@ typedef struct demi_spots {
     demi_d3 normal, x[4];          /* unit, from a to b; m */
     double gap[4];                 /* m; negative: overlap */
 } demi_spots;
-/* Picks up to four of many points in a plane across n: the deepest, the farthest from it, and on
-   either side of the line through both the farthest from that line. Returns their number. */
+/* How much a point that is `off` (m) aside of others matters, for demi_spots_pick. Points that
+   touch (gap of at most `touch`, m) come first, the farthest of them before others. Of the rest,
+   those come first that the smallest rotation brings into contact. far: largest distance, m. */
+static double demi_spot_matters(double off, double gap, double touch, double far) {
+    if (!(off > 1e-6*far)) return 0;
+    return gap > touch ? off/far*touch/gap : 1 + off/far;
+}
+/* Picks up to four of many points in a plane across n: the deepest, and then by demi_spot_matters
+   one by its distance from the deepest, and on either side of the line through both one by its
+   distance from that line. Returns their number. The range of the search changes nothing while four
+   points touch. */
 static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
     demi_d3 across;
-    double most = -1, side[2] = {0, 0};
-    int i, k, picked = 2, far[2] = {-1, -1};
+    double far = 0, touch, most = 0, side[2] = {0, 0};
+    int i, k, pass, picked = 2, best[2] = {-1, -1};
     if (count <= 4) {
         for (i = 0; i < count; i++) out[i] = i;
         return count;
     }
     out[0] = out[1] = 0;
     for (i = 1; i < count; i++) if (gap[i] < gap[out[0]]) out[0] = i;
-    for (i = 0; i < count; i++) {
-        const double d2 = demi_d3_square(demi_d3_sub(x[i], x[out[0]]));
-        if (d2 > most) { most = d2; out[1] = i; }
+    for (pass = 0, touch = 0; pass < 2; pass++) {
+        for (i = 0; i < count; i++) {
+            const double off = demi_d3_length(demi_d3_cross(n, demi_d3_sub(x[i], x[out[0]])));
+            const double matters = demi_spot_matters(off, gap[i], touch, far);
+            if (!pass) far = DEMI_MAX(far, off);
+            else if (matters > most) { most = matters; out[1] = i; }
+        }
+        touch = DEMI_MAX(gap[out[0]], 0) + 1e-4*far;
     }
     if (!(most > 0)) return 1;
-    across = demi_d3_cross(n, demi_d3_sub(x[out[1]], x[out[0]]));
+    across = demi_d3_unit(demi_d3_cross(n, demi_d3_sub(x[out[1]], x[out[0]])));
     for (i = 0; i < count; i++) {
         const double off = demi_d3_dot(across, demi_d3_sub(x[i], x[out[0]]));
+        const double matters = demi_spot_matters(fabs(off), gap[i], touch, far);
         k = off < 0;
-        if (fabs(off) > side[k] + 1e-9*most) { side[k] = fabs(off); far[k] = i; }
+        if (matters > side[k]) { side[k] = matters; best[k] = i; }
     }
-    for (k = 0; k < 2; k++) if (far[k] >= 0) out[picked++] = far[k];
+    for (k = 0; k < 2; k++) if (best[k] >= 0) out[picked++] = best[k];
     return picked;
 }
 /* Keeps those of `count` points whose gaps are below range, at most four. Returns their number. */
@@ -20000,6 +20045,7 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
 static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
                              const demi_part *part, demi_touching *out) {
     const double r = demi_part_equal(part);
+    const demi_part local = demi_part_local(R, part);
     double shared = 0, force = 0, overlap;
     demi_patch p;
     int i, k, count = 0;
@@ -20009,7 +20055,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     }
     overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
     for (i = 0; i < f->count && overlap > 0; i++) {
-        if (!demi_pressure_patch(&f->press[i], &p)) continue;
+        if (!demi_pressure_patch(&f->press[i], &local.q, 0, &p)) continue;
         for (k = 0; k < 4; k++) {
             demi_touching *t = &out[count++];
             t->element = f->element[i];
@@ -21862,7 +21908,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_solid_of(q, gap, &b);
     if (w->desc.planar)                         /* either one, but always the same */
         demi_solid_stretch(w->bodies.slot[c->a] < w->bodies.slot[c->b] ? &a : &b);
-    overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &at)
+    overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &p->q, &q->q, &at)
         ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;

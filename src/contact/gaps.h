@@ -347,30 +347,45 @@ typedef struct demi_spots {
     demi_d3 normal, x[4];          /* unit, from a to b; m */
     double gap[4];                 /* m; negative: overlap */
 } demi_spots;
-/* Picks up to four of many points in a plane across n: the deepest, the farthest from it, and on
-   either side of the line through both the farthest from that line. Returns their number. */
+/* How much a point that is `off` (m) aside of others matters, for demi_spots_pick. Points that
+   touch (gap of at most `touch`, m) come first, the farthest of them before others. Of the rest,
+   those come first that the smallest rotation brings into contact. far: largest distance, m. */
+static double demi_spot_matters(double off, double gap, double touch, double far) {
+    if (!(off > 1e-6*far)) return 0;
+    return gap > touch ? off/far*touch/gap : 1 + off/far;
+}
+/* Picks up to four of many points in a plane across n: the deepest, and then by demi_spot_matters
+   one by its distance from the deepest, and on either side of the line through both one by its
+   distance from that line. Returns their number. The range of the search changes nothing while four
+   points touch. */
 static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
     demi_d3 across;
-    double most = -1, side[2] = {0, 0};
-    int i, k, picked = 2, far[2] = {-1, -1};
+    double far = 0, touch, most = 0, side[2] = {0, 0};
+    int i, k, pass, picked = 2, best[2] = {-1, -1};
     if (count <= 4) {
         for (i = 0; i < count; i++) out[i] = i;
         return count;
     }
     out[0] = out[1] = 0;
     for (i = 1; i < count; i++) if (gap[i] < gap[out[0]]) out[0] = i;
-    for (i = 0; i < count; i++) {
-        const double d2 = demi_d3_square(demi_d3_sub(x[i], x[out[0]]));
-        if (d2 > most) { most = d2; out[1] = i; }
+    for (pass = 0, touch = 0; pass < 2; pass++) {
+        for (i = 0; i < count; i++) {
+            const double off = demi_d3_length(demi_d3_cross(n, demi_d3_sub(x[i], x[out[0]])));
+            const double matters = demi_spot_matters(off, gap[i], touch, far);
+            if (!pass) far = DEMI_MAX(far, off);
+            else if (matters > most) { most = matters; out[1] = i; }
+        }
+        touch = DEMI_MAX(gap[out[0]], 0) + 1e-4*far;
     }
     if (!(most > 0)) return 1;
-    across = demi_d3_cross(n, demi_d3_sub(x[out[1]], x[out[0]]));
+    across = demi_d3_unit(demi_d3_cross(n, demi_d3_sub(x[out[1]], x[out[0]])));
     for (i = 0; i < count; i++) {
         const double off = demi_d3_dot(across, demi_d3_sub(x[i], x[out[0]]));
+        const double matters = demi_spot_matters(fabs(off), gap[i], touch, far);
         k = off < 0;
-        if (fabs(off) > side[k] + 1e-9*most) { side[k] = fabs(off); far[k] = i; }
+        if (matters > side[k]) { side[k] = matters; best[k] = i; }
     }
-    for (k = 0; k < 2; k++) if (far[k] >= 0) out[picked++] = far[k];
+    for (k = 0; k < 2; k++) if (best[k] >= 0) out[picked++] = best[k];
     return picked;
 }
 /* Keeps those of `count` points whose gaps are below range, at most four. Returns their number. */

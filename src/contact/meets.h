@@ -198,7 +198,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_solid_of(q, gap, &b);
     if (w->desc.planar)                         /* either one, but always the same */
         demi_solid_stretch(w->bodies.slot[c->a] < w->bodies.slot[c->b] ? &a : &b);
-    overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &at)
+    overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &p->q, &q->q, &at)
         ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;

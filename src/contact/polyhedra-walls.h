@@ -84,6 +84,7 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
 static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
                              const demi_part *part, demi_touching *out) {
     const double r = demi_part_equal(part);
+    const demi_part local = demi_part_local(R, part);
     double shared = 0, force = 0, overlap;
     demi_patch p;
     int i, k, count = 0;
@@ -93,7 +94,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     }
     overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
     for (i = 0; i < f->count && overlap > 0; i++) {
-        if (!demi_pressure_patch(&f->press[i], &p)) continue;
+        if (!demi_pressure_patch(&f->press[i], &local.q, 0, &p)) continue;
         for (k = 0; k < 4; k++) {
             demi_touching *t = &out[count++];
             t->element = f->element[i];

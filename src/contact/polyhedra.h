@@ -408,9 +408,39 @@ typedef struct demi_patch {
     dem_real couple;               /* m: moment about the normal, over the force */
     double force;                  /* m2: integral of u n */
 } demi_patch;
-/* Sets the patch of a pressure. Returns 0 if it has no force. The directions of the spread are
-   arbitrary but stay the same from step to step. */
-static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
+/* Returns a unit vector across n: the direction in which the pressure, of second moments M, is
+   spread most. Orientations `a` and, of a pair, `b` of the bodies decide where it is spread alike
+   in all directions, and its sign. It therefore rotates with the bodies and does not depend on the
+   axes of the world, nor on which of two bodies comes first. */
+static demi_d3 demi_patch_along(const double *M, demi_d3 n, const dem_quat *a, const dem_quat *b) {
+    const demi_d3 t = demi_d3_unit(demi_d3_cross(n, fabs(n.x) < 0.6 ? demi_d(1, 0, 0)
+                                                                    : demi_d(0, 1, 0)));
+    const demi_d3 e = demi_d3_cross(t, n), Mt = demi_d3_rotate(M, t), Me = demi_d3_rotate(M, e);
+    const double hint = 1e-4*(M[0] + M[4] + M[8]);
+    double c = demi_d3_dot(e, Me) - demi_d3_dot(t, Mt), s = 2*demi_d3_dot(e, Mt), r;
+    demi_d3 way = demi_d(0, 0, 0), along;
+    double R[9];
+    int k, i;
+    for (k = 0; k < (b ? 2 : 1); k++) {
+        demi_rotation_of(k ? *b : *a, R);
+        way = demi_d3_add(way, demi_d3_rotate(R, demi_d(0.3301, 0.5563, 0.7626)));
+        for (i = 1; i < 3; i++) {               /* weights 0, 1 and 2 of the body's axes */
+            const demi_d3 axis = demi_d(R[i], R[3 + i], R[6 + i]);
+            const double x = demi_d3_dot(e, axis), y = demi_d3_dot(t, axis);
+            c += i*hint*(x*x - y*y);
+            s += i*hint*2*x*y;
+        }
+    }
+    r = sqrt(c*c + s*s);                        /* (c, s) is at twice the angle */
+    along = c > 0 ? demi_d3_plus(demi_d3_scale(e, r + c), s, t)
+                  : demi_d3_plus(demi_d3_scale(e, s), r - c, t);
+    if (!(demi_d3_length(along) > 0)) return e;
+    return demi_d3_scale(demi_d3_unit(along), demi_d3_dot(along, way) < 0 ? -1 : 1);
+}
+/* Sets the patch of a pressure, from the orientations of both bodies (b: null for a wall). Returns
+   0 if it has no force. */
+static int demi_pressure_patch(const demi_pressure *s, const dem_quat *a, const dem_quat *b,
+                               demi_patch *out) {
     const double *m = s->wide, F = demi_d3_length(s->force), sum2 = s->sum*s->sum;
     demi_d3 n, e, t, Ce, Ct;
     double C[6], M[9], ee, tt, et, root, size;
@@ -424,8 +454,8 @@ static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
     for (k = 0; k < 6; k++) C[k] = m[k]/s->sum - C[k]/sum2;
     for (k = 0; k < 6; k++) M[3*demi_sym_row[k] + demi_sym_column[k]] = C[k];
     M[3] = C[3]; M[6] = C[4]; M[7] = C[5];
-    t = demi_d3_unit(demi_d3_cross(n, demi_d(0.3301, 0.5563, 0.7626)));
-    e = demi_d3_cross(t, n);
+    e = demi_patch_along(M, n, a, b);
+    t = demi_d3_cross(n, e);
     Ce = demi_d3_rotate(M, e);
     Ct = demi_d3_rotate(M, t);
     ee = DEMI_MAX(demi_d3_dot(e, Ce), 0);
