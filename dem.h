@@ -1405,6 +1405,17 @@ DEM_INLINE void dem_law_twist(const dem_contact *c, dem_real *memory, dem_contac
     *memory = m - t*(c->dt > 0 ? (1 - left)*DEM_R(0.09/0.69) : 0);
     f->energy.roll -= t*left*w*c->dt;
 }
+/* Defines the law NAME: the user-defined law LAW with MEMORY reals of history (a constant), then
+   dem_law_roll_epsd and dem_law_twist with the rolling and spinning friction of the materials.
+   LAW must set f->load, f->slope and f->slope_step as the laws in examples/laws do. NAME needs
+   desc.law_memory = MEMORY + 4, and one more of desc.law_vectors than LAW.
+   Tests: tests/examples/test_more_laws.c. */
+#define DEM_LAW_ROLLING(NAME, LAW, MEMORY) \
+    DEM_INLINE void NAME(const dem_contact *c, dem_real *memory, dem_contact_force *f) { \
+        LAW(c, memory + 3, f); \
+        dem_law_roll_epsd(c, memory, f); \
+        dem_law_twist(c, memory + 3 + (MEMORY), f); \
+    }
 
 /* ---- other functions that you may hand over ---- */
 
@@ -2544,8 +2555,8 @@ typedef struct dem_rail_desc {
     dem_vec3 velocity;             /* m/s, along locked axes */
     dem_vec3 spin;                 /* rad/s, about locked axes */
     /* The body also has the velocity and spin of this wall along and about locked axes, as if it
-       were part of it, so any motion of a wall is a path for a body. Null means none, and so does
-       a wall that is removed later. */
+       were part of it, so any motion of a wall is a path for a body. Null means none;
+       also if the wall is removed. */
     dem_wall wall;
 } dem_rail_desc;
 static const dem_rail_desc DEM_RAIL_DESC_ZERO = DEM_ZERO;
@@ -38834,6 +38845,42 @@ static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) 
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
 }
+#define DEMI_COEF_COPY(PROPERTY, COEFFICIENT, UNIT) c.COEFFICIENT = k.COEFFICIENT;
+/* Returns the name of a friction of material i (from 0) that desc.law ignores, or null. In a trial
+   contact of two such grains, which begins and is 1 % of R* deep, the law exerts no moment against
+   it. A law that sees the bodies (law_who) is not called: its user may have no data for them. */
+static const char *demi_law_lacks(const dem_world *w, int i) {
+    const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + i].given;
+    const dem_material m = {i + 1};
+    dem_real memory[DEMI_MEMORY];
+    dem_coefficients k;
+    dem_contact c;
+    dem_contact_force f;
+    int twist;
+    if (!w->desc.law || w->desc.law_who) return 0;
+    for (twist = 0; twist < 2; twist++) {
+        if (!((twist ? p->spinning_friction : p->rolling_friction) > 0)) continue;
+        if (dem_coefficients_get(w, m, m, DEM_R(1e-3), DEM_R(1e-3), &k) != DEM_OK) continue;
+        memset(&c, 0, sizeof c);
+        memset(memory, 0, sizeof memory);
+        demi_contact_usual(&c);
+        c.r_eff = k.r_eff; c.m_eff = k.m_eff;
+        c.kn = k.kn; c.cn = k.cn; c.kt = k.kt; c.ct = k.ct; c.kun = k.kun;
+        DEM_LAW_COEFFICIENTS(DEMI_COEF_COPY)
+        c.friction = c.friction_static = p->friction;
+        c.rolling_friction = p->rolling_friction; c.spinning_friction = p->spinning_friction;
+        c.overlap = k.r_eff/100;
+        c.normal.z = 1;
+        c.spin = c.spin_step = demi_v(twist ? 0 : DEM_R(1), 0, twist ? DEM_R(1) : 0);
+        c.dt = w->clock.dt > 0 ? w->clock.dt : DEM_R(1e-6);
+        c.material_a = c.material_b = i + 1;
+        c.user = w->desc.law_user;
+        demi_law(w, &c, memory, &f);
+        if (!(demi_dot(f.moment, c.spin) < 0))
+            return twist ? "spinning friction" : "rolling friction";
+    }
+    return 0;
+}
 /* Checks materials (values that suggest other units, materials without use) and the number of
    threads. */
 static void demi_check_materials(const dem_world *w, demi_findings *f) {
@@ -38863,11 +38910,11 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_WARNING,
                       "material %d has a rolling friction of %g: it is a fraction of the "
                       "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
-        if (w->desc.law && (m->rolling_friction > 0 ||
-            w->pairs[i*DEMI_MATERIALS + i].given.spinning_friction > 0))
-            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling or spinning friction, but "
-                      "desc.law decides whether it acts, and the laws shipped in examples/laws "
-                      "ignore it: call dem_law_roll_epsd or dem_law_twist in your law", i + 1);
+        if (demi_law_lacks(w, i))
+            demi_find(f, DEM_SEVERITY_WARNING, "desc.law exerts no moment against the %s of "
+                      "material %d, so its grains %s freely: define the law by DEM_LAW_ROLLING, "
+                      "or set this friction to 0", demi_law_lacks(w, i), i + 1,
+                      demi_law_lacks(w, i)[0] == 'r' ? "roll" : "spin");
         if (m->rolling_friction > 0 && !(m->friction > 0))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
                       "friction: its grains slide instead of rolling", i + 1);
@@ -40077,6 +40124,12 @@ static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
     const int law = demi_rolling_meant(w);
+    int i;
+    for (i = 0; i < w->material_count; i++)
+        if (demi_law_lacks(w, i)) {
+            demi_say(e, 0, "desc.law ignores the %s of material %d", demi_law_lacks(w, i), i + 1);
+            return DEM_EFFECT_OFF;
+        }
     return demi_look_response(w, demi_rolls, law == DEM_ROLLING_NONE ? 0
                               : demi_rolling_laws[law].name, "rolling_law is DEM_ROLLING_NONE", e);
 }
@@ -40739,6 +40792,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         : (int)w->desc.friction_load;           /* without tension: the normal force */
     const demi_laws *laws = &w->laws;
     char text[64];
+    int i;
     const char *unused = "";
 #ifdef DEM_LAW
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
@@ -40758,6 +40812,10 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     if (w->desc.law) {
         fprintf(out, "effects    normal, tangential, rolling: user-defined law; spins and torques "
                 "are followed; %d reals of memory per contact\n", w->desc.law_memory);
+        for (i = 0; i < w->material_count; i++)
+            if (demi_law_lacks(w, i))
+                fprintf(out, "           it exerts no moment against the %s of material %d\n",
+                        demi_law_lacks(w, i), i + 1);
         if (w->margin.reach > 0)
             fprintf(out, "           called for gaps below %.3g m, in contact or not\n",
                     w->margin.reach);

@@ -737,7 +737,7 @@ static inline int exam_is_quick(const exam *e, char *found) {
    then has the message. */
 static inline dem_result exam_take(exam *e, exam_sheet *sheet) {
     static const struct { const char *asks; int (*answer)(const exam *e, char *found); } row[EXAM_LINES] = {
-        {"finite, whatever comes", exam_is_finite}, {"nothing remembered beside its memory", exam_is_pure},
+        {"finite, whatever comes", exam_is_finite}, {"no hidden state", exam_is_pure},
         {"memory only in a step", exam_is_asked}, {"the same seen from a and from b", exam_is_swapped},
         {"the same in every frame", exam_is_turned}, {"no jumps, from beginning to end", exam_is_smooth},
         {"no energy from pressing", exam_is_pressed}, {"no energy from slipping", exam_is_sheared},

@@ -58,6 +58,7 @@ static inline void jkr_law(const dem_contact *c, dem_real *memory, dem_contact_f
         F = E*(a*a*a*4/(3*R) - 2*B*a*x);
         f->elastic = F;
         f->energy.elastic = E*(a*a*a*a*a*8/(15*R*R) - a*a*a*x*B*4/(3*R) + a*a*B*B/2);
+        f->slope = f->slope_step = 2*E*a;                           /* of the disc that sticks, for rolling laws */
         f->kt = f->kt_step = c->kt*a/root;                          /* 8 G* a */
         f->ct = c->ct*x/(dem_real)sqrt((double)root);
         f->normal = F + c->cn*x/(dem_real)sqrt((double)root)*c->closing_speed;

@@ -1736,8 +1736,7 @@ class Body(Id):
         velocity: m/s, along locked axes
         spin: rad/s, about locked axes
         wall: The body also has the velocity and spin of this wall along and about locked axes, as if it were part of
-            it, so any motion of a wall is a path for a body. Null means none, and so does a wall that is removed
-            later.
+            it, so any motion of a wall is a path for a body. Null means none; also if the wall is removed.
         """
         desc = RailDesc(axes=axes, velocity=velocity, spin=spin, wall=wall)
         self.world._ok(_lib.dem_body_rail_set(self.world._at, self, desc))
@@ -2752,8 +2751,7 @@ class RailDesc(Struct):
         ('spin', Vec3, 'rad/s, about locked axes'),
         ('wall', Wall,
          'The body also has the velocity and spin of this wall along and about locked axes, as if it were part'
-         ' of it, so any motion of a wall is a path for a body. Null means none, and so does a wall that is '
-         'removed later.'),
+         ' of it, so any motion of a wall is a path for a body. Null means none; also if the wall is removed.'),
     ]
 
 

@@ -793,6 +793,17 @@ DEM_INLINE void dem_law_twist(const dem_contact *c, dem_real *memory, dem_contac
     *memory = m - t*(c->dt > 0 ? (1 - left)*DEM_R(0.09/0.69) : 0);
     f->energy.roll -= t*left*w*c->dt;
 }
+/* Defines the law NAME: the user-defined law LAW with MEMORY reals of history (a constant), then
+   dem_law_roll_epsd and dem_law_twist with the rolling and spinning friction of the materials.
+   LAW must set f->load, f->slope and f->slope_step as the laws in examples/laws do. NAME needs
+   desc.law_memory = MEMORY + 4, and one more of desc.law_vectors than LAW.
+   Tests: tests/examples/test_more_laws.c. */
+#define DEM_LAW_ROLLING(NAME, LAW, MEMORY) \
+    DEM_INLINE void NAME(const dem_contact *c, dem_real *memory, dem_contact_force *f) { \
+        LAW(c, memory + 3, f); \
+        dem_law_roll_epsd(c, memory, f); \
+        dem_law_twist(c, memory + 3 + (MEMORY), f); \
+    }
 
 /* ---- other functions that you may hand over ---- */
 

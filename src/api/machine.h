@@ -292,8 +292,8 @@ typedef struct dem_rail_desc {
     dem_vec3 velocity;             /* m/s, along locked axes */
     dem_vec3 spin;                 /* rad/s, about locked axes */
     /* The body also has the velocity and spin of this wall along and about locked axes, as if it
-       were part of it, so any motion of a wall is a path for a body. Null means none, and so does
-       a wall that is removed later. */
+       were part of it, so any motion of a wall is a path for a body. Null means none;
+       also if the wall is removed. */
     dem_wall wall;
 } dem_rail_desc;
 static const dem_rail_desc DEM_RAIL_DESC_ZERO = DEM_ZERO;

@@ -186,6 +186,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         : (int)w->desc.friction_load;           /* without tension: the normal force */
     const demi_laws *laws = &w->laws;
     char text[64];
+    int i;
     const char *unused = "";
 #ifdef DEM_LAW
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
@@ -205,6 +206,10 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     if (w->desc.law) {
         fprintf(out, "effects    normal, tangential, rolling: user-defined law; spins and torques "
                 "are followed; %d reals of memory per contact\n", w->desc.law_memory);
+        for (i = 0; i < w->material_count; i++)
+            if (demi_law_lacks(w, i))
+                fprintf(out, "           it exerts no moment against the %s of material %d\n",
+                        demi_law_lacks(w, i), i + 1);
         if (w->margin.reach > 0)
             fprintf(out, "           called for gaps below %.3g m, in contact or not\n",
                     w->margin.reach);

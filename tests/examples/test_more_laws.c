@@ -112,6 +112,53 @@ static int passes(exam *e) {
     return 1;
 }
 
+DEM_LAW_ROLLING(viscoelastic_rolling, viscoelastic_law, 4)
+DEM_LAW_ROLLING(walton_braun_rolling, walton_braun_law, 6)
+DEM_LAW_ROLLING(luding_rolling, luding_law, 6)
+DEM_LAW_ROLLING(dmt_rolling, dmt_law, 4)
+DEM_LAW_ROLLING(jkr_rolling, jkr_law, 6)
+DEM_LAW_ROLLING(capillary_rolling, capillary_law, 5)
+
+/* A grain that rolls over a plane at 0.02 m/s and spins about the vertical at 20 rad/s; both have rolling friction 0.1 and
+   spinning friction 0.1. Writes what is left of its speed and of that spin after 0.06 s, as fractions, and checks what the
+   report and dem_world_check say about the law. roll: 1 if the law resists. */
+static void rolled(const exam *e, dem_law_fn law, int roll, double *speed, double *spin) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc stuff = e->material;
+    dem_pair pair;
+    dem_finding found[16];
+    int k, count, warned = 0;
+    desc.threads = 1;
+    desc.gravity.z = DEM_R(-9.81);
+    desc.law = law;
+    desc.law_user = e->user;
+    desc.law_memory = e->memory + 4*roll;
+    desc.law_vectors = e->vectors + roll;
+    desc.law_stiffness = (dem_real)e->stiffness;
+    desc.law_range = (dem_real)e->range;
+    desc.normal_law = e->coefficients;
+    desc.impact_speed = (dem_real)e->speed;
+    desc.dt = DEM_R(5e-7);
+    stuff.friction = DEM_R(0.5);
+    stuff.rolling_friction = DEM_R(0.1);
+    dem_world *world = dem_world_create(&desc);
+    const dem_material m = dem_material_add(world, &stuff);
+    dem_pair_get(world, m, m, &pair);
+    pair.spinning_friction = DEM_R(0.1);
+    CHECK_EQ(dem_pair_set(world, m, m, &pair), DEM_OK);
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    const dem_body ball = dem_sphere_add(world, m, (dem_real)e->radius, at(0, 0, (1 - 1e-4)*e->radius));
+    scene_move(world, ball, at(0.02, 0, 0), at(0, 0.02/e->radius, 20));
+    count = dem_world_check(world, found, 16);
+    for (k = 0; k < count && k < 16; k++) warned += strstr(found[k].text, "exerts no moment against the rolling") != 0;
+    CHECK_EQ(warned, !roll);
+    CHECK_EQ(scene_step(world, 120000), DEM_OK);
+    if (!roll) scene_report_has(world, "it exerts no moment against the rolling friction of material 1");
+    *speed = (double)scene_state(world, ball).velocity.x/0.02;
+    *spin = (double)scene_state(world, ball).spin.z/20;
+    dem_world_destroy(world);
+}
+
 int main(int argc, char **argv) {
     static viscoelastic flows;
     static walton_braun yields;
@@ -300,6 +347,26 @@ int main(int argc, char **argv) {
         CHECK(passes(&dry));
         CHECK(passes(&skin));
         CHECK(passes(&wet));
+    }
+    TEST("DEM_LAW_ROLLING gives a shipped law the materials' rolling and spinning friction; without it the check warns") {
+        const walton_braun w = {DEM_R(1e4), 1, DEM_R(3e4), DEM_R(0.02)};
+        const luding l = {DEM_R(1e4), DEM_R(5e4), DEM_R(5e2), DEM_R(4e-5), DEM_R(0.02)};
+        const struct { const exam *e; dem_law_fn rolling; } laws[] = {
+            {&soft, viscoelastic_rolling}, {&dent, walton_braun_rolling}, {&powder, luding_rolling},
+            {&dry, dmt_rolling}, {&skin, jkr_rolling}, {&wet, capillary_rolling}};
+        double speed, spin;
+        size_t k;
+        flows.A = DEM_R(4e-6);
+        yields = w;
+        sticks = l;
+        for (k = 0; k < sizeof laws/sizeof laws[0]; k++) {
+            rolled(laws[k].e, laws[k].e->law, 0, &speed, &spin);
+            CHECK_NEAR(speed, 1, 0.02);
+            CHECK_NEAR(spin, 1, 0.02);
+            rolled(laws[k].e, laws[k].rolling, 1, &speed, &spin);
+            CHECK_NEAR(speed, 0, 0.02);
+            CHECK_NEAR(spin, 0, 0.02);
+        }
     }
     return test_end();
 }
