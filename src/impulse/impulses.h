@@ -164,6 +164,7 @@ typedef struct demi_knot {
                                       body */
     double work, bank, kinetic;    /* J: work of its joints; energy that they have absorbed; kinetic
                                       energy of its bodies */
+    double wide, pull, kept;
     double x[6];                   /* right-hand side, then solution */
     dem_quat turned;               /* of a body: orientation a step ahead, see demi_knots_ahead */
     /* used by demi_knots_order: neighbours; queue of nodes with a degree of this index; number of
@@ -180,6 +181,7 @@ typedef struct demi_link_of { int32_t to, next; } demi_link_of;
 #define DEMI_GIVE_LOOPS DEM_R(1e-6)
 #define DEMI_JOINED (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-8))
 #define DEMI_BANKED 1e-3
+#define DEMI_SMOOTH 1e-4
 /* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
    they do not touch each other. */
 static int demi_joined(const dem_world *w, int a, int b, int wall) {

@@ -189,10 +189,12 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
         o.point = j->arm[end];
         o.axis = j->axis[end];
         if (j->desc.wall.id) {
-            const dem_pose *pose = &w->walls[demi_wall_place(j->desc.wall)].pose;
-            const dem_quat q = demi_quat_exp(demi_scale(pose->spin, by));
+            const demi_wall *wall = &w->walls[demi_wall_place(j->desc.wall)];
+            const dem_pose *pose = &wall->pose;
+            const dem_quat q = demi_quat_exp(demi_scale(wall->ahead.spin, by));
             o.point = dem_quat_rotate(q, demi_rotate(pose->rotation, o.point));
-            o.point = demi_add(demi_add(pose->position, o.point), demi_scale(pose->velocity, by));
+            o.point = demi_add(demi_add(pose->position, o.point),
+                               demi_scale(wall->ahead.velocity, by));
             o.axis = dem_quat_rotate(q, demi_rotate(pose->rotation, o.axis));
         }
     }
@@ -479,13 +481,20 @@ static void demi_joints_lay(dem_world *w) {
             demi_joint *j = w->joints + s->knots[i].rod;
             const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
             const dem_real gap = j->state.gap + j->state.tilt*size;
+            const demi_rod *r = s->rods + s->knots[i].rod;
+            const dem_real pull = demi_length(demi_at(r->given))*
+                (s->movers[r->a].inv + s->movers[r->b].inv)*s->dt;
             group->bank += j->bank;
+            group->wide = DEMI_MAX(group->wide, (double)gap);
+            group->pull = DEMI_MAX(group->pull, (double)pull);
             j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
             group->open |= (gap > 100*DEMI_JOINED*size) | (j->apart > few)*2;
         } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
             demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
             (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
     }
+    for (i = 0; i < s->knot_count; i++)
+        s->knots[i].guarded = s->knots[i].wide > DEMI_SMOOTH*s->knots[i].pull;
     s->factored = 0;
 }
 /* Warm start: applies the impulses of the last step, and those of motors with a given torque. */
@@ -520,10 +529,60 @@ static void demi_knots_ahead(dem_world *w) {
         s->knots[i].turned = q;
     }
 }
+/* Returns the angular acceleration of a body that rotates with the spin without torque, rad/s2. */
+static dem_vec3 demi_knot_tumbles(const dem_world *w, int body, dem_vec3 spin) {
+    const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
+    const dem_vec3 I = demi_moments_of(w, body), x = dem_quat_unrotate(q, spin);
+    const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
+    if (!demi_shape_of(w, body)) return demi_v(0, 0, 0);
+    return demi_mover_turn(&w->solver, body, demi_cross(L, spin), 1);
+}
+/* Returns the acceleration of the point that a joint holds on a wall, m/s2. */
+static dem_vec3 demi_rod_driven(const dem_world *w, int joint) {
+    const demi_joint *j = &w->joints[joint];
+    const demi_wall *wall = j->desc.wall.id ? &w->walls[demi_wall_place(j->desc.wall)] : 0;
+    const dem_pose *was, *next;
+    if (!wall || wall->motion.kind == DEM_MOTION_FIXED) return demi_v(0, 0, 0);
+    was = &wall->was;
+    next = &wall->ahead;
+    return demi_scale(demi_sub(
+        demi_surface_at(next, demi_add(next->position, demi_rotate(next->rotation, j->arm[1]))),
+        demi_surface_at(was, demi_add(was->position, demi_rotate(was->rotation, j->arm[1])))),
+        1/w->solver.dt);
+}
+/* Computes the acceleration of a relative to b in the first five rows if no force acted, m/s2 and
+   rad/s2: the mean of those with the velocities before and after the step. */
+static void demi_rod_bends(const dem_world *w, int joint, dem_real *bend) {
+    const demi_rod *r = w->solver.rods + joint;
+    const dem_vec3 x = r->along[2];
+    dem_vec3 point = demi_v(0, 0, 0), axis = point;
+    int e, after, k;
+    for (after = 0; after < 2; after++) {
+        dem_vec3 rate[2] = {{0, 0, 0}, {0, 0, 0}};
+        for (e = 0; e < 2; e++) {
+            const int body = e ? r->b : r->a;
+            const dem_real half = e ? DEM_R(-0.5) : DEM_R(0.5);
+            dem_vec3 spin = demi_at(w->solver.movers[body].w), tumbles = demi_v(0, 0, 0);
+            if (body < w->bodies.count) {
+                if (!after) spin = demi_at(w->bodies.spin + 4*body);
+                tumbles = demi_knot_tumbles(w, body, spin);
+                point = demi_add(point, demi_scale(demi_add(demi_cross(tumbles, r->arm[e]),
+                    demi_cross(spin, demi_cross(spin, r->arm[e]))), half));
+            } else point = demi_add(point, demi_scale(demi_rod_driven(w, joint), half));
+            rate[e] = demi_cross(spin, x);
+            axis = demi_add(axis, demi_scale(demi_cross(x, demi_add(demi_cross(tumbles, x),
+                                                        demi_cross(spin, rate[e]))), half));
+        }
+        axis = demi_add(axis, demi_cross(rate[1], rate[0]));
+    }
+    demi_put(bend, point);
+    for (k = 3; k < 5; k++) bend[k] = demi_dot(axis, r->along[k - 3]);
+}
 /* Computes the residual velocities of a joint's rows, m/s and rad/s. Their target is that its
-   points and axes coincide at the next detection. In a guarded group the target is the opposite of
-   the velocity before the step (half of it at level 1), unless `shifts` is 1, which asks for the
-   gaps to be closed by displacements. Returns the squared sum, (m/s)^2. */
+   points and axes coincide at the next detection. In a guarded group it is the change of velocity
+   in half a step in which the gap grows evenly (level 1), or the opposite of the velocity before
+   the step (level 2), unless `shifts` is 1, which asks for the gaps to be closed by displacements.
+   Returns the squared sum, (m/s)^2. */
 static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *lacks) {
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + i;
@@ -534,8 +593,13 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
     if (!r->rows) return 0;
     demi_rod_velocity(s, r, u);
     if (s->knots[s->knots[r->knot].group].guarded && !shifts) {
-        const dem_real back = s->knots[s->knots[r->knot].group].guarded > 1 ? 1 : DEM_R(0.5);
-        for (k = 0; k < 5; k++) lacks[k] = -back*r->before[k] - u[k];
+        dem_real bend[6];
+        if (s->knots[s->knots[r->knot].group].guarded > 1)
+            for (k = 0; k < 5; k++) lacks[k] = -r->before[k] - u[k];
+        else {
+            demi_rod_bends(w, i, bend);
+            for (k = 0; k < 5; k++) lacks[k] = -bend[k]*s->dt/2 - u[k];
+        }
     } else {
         const demi_periods p = demi_periods_of(w);
         const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
@@ -668,7 +732,16 @@ static double demi_joints_shift(dem_world *w) {
     for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
     if (!any) return 0;
     demi_joints_solve(w, 1);
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < s->knot_count; i++) s->knots[i].work = s->knots[i].kept = 0;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        dem_real u[6];
+        int e;
+        if (!r->rows) continue;
+        demi_rod_velocity(s, r, u);
+        for (e = 0; e < 5; e++)
+            s->knots[demi_knot_group(s, r->knot)].kept += fabs((double)(r->given[e]*u[e]));
+    }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i;
         const double fall = demi_d3_dot(demi_d3_of(w->desc.gravity), demi_d3_at(k->x));
@@ -677,8 +750,9 @@ static double demi_joints_shift(dem_world *w) {
     }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i, *group = s->knots + k->group;
-        const double paid = group->open > 1 || !(group->work > group->bank) ? 1
-            : DEMI_MAX(group->bank, 0)/group->work;
+        const double spare = DEMI_MAX(0, group->bank -
+                                      DEMI_MIN(group->kept, DEMI_BANKED/2*group->kinetic));
+        const double paid = group->open > 1 || !(group->work > spare) ? 1 : spare/group->work;
         const dem_real by = (dem_real)paid*s->dt;
         const dem_vec3 way = demi_scale(demi_d3_real(demi_d3_at(k->x)), by);
         const dem_vec3 turn = demi_scale(demi_d3_real(demi_d3_at(k->x + 3)), by);
@@ -687,7 +761,7 @@ static double demi_joints_shift(dem_world *w) {
         if (!group->guarded || !group->open) continue;
         if (k->mover < 0) {
             if (group->work > 0 && group->bank > 0)
-                w->joints[k->rod].bank *= 1 - DEMI_MIN(1, group->work/group->bank);
+                w->joints[k->rod].bank *= 1 - DEMI_MIN(1, paid*group->work/group->bank);
             continue;
         }
         o = w->bodies.last_orient + 4*k->mover;  /* where demi_ahead_back puts it */
