@@ -360,7 +360,10 @@ static void demi_visit_events(dem_world *w, demi_stream *s) {
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     int d;
     demi_visit_numbers(w, s);
-    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;      /* see demi_kept_tidy */
+    for (d = 0; d < w->domain_count; d++) {
+        w->domains[d].coefs = 0;                /* see demi_kept_tidy */
+        w->domains[d].check = 0;                /* of the last step, which it has passed */
+    }
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
     demi_visit_joints(w, s);

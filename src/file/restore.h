@@ -616,8 +616,10 @@ static int demi_twin_follow(dem_world *t) {
             const int a = t->near.a[first + k], b = t->near.b[first + k];
             t->near.image[first + k] = demi_pair_image(t, &p, a, b);
             if (t->effects.clustered) t->near.on[first + k] = 1;
-            run = k && t->near.k[first + k] == t->near.k[first + k - 1] ? run + 1 : 1;
-            t->domains[d].merging = DEMI_MAX(t->domains[d].merging, run);
+            run = k && k != o->near_cross && t->near.k[first + k] == t->near.k[first + k - 1]
+                ? run + 1 : 1;
+            if (t->effects.clustered)
+                t->domains[d].merging = DEMI_MAX(t->domains[d].merging, run);
             if (!t->effects.uniform && !(t->stage.pairs_changed && demi_many_species(t)))
                 demi_near_coefs(t, &t->near, d, k);
         }

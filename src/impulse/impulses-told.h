@@ -70,9 +70,15 @@ static void demi_impulses_lift(dem_world *w, int index) {
         if (lb) demi_put(lb, demi_add(b, demi_scale(n, by*ib)));
     }
 }
+/* True if no contact and no joint acts on body i. */
+static int demi_mover_free(const dem_world *w, int i) {
+    return !w->solver.colours[i] && !(w->joint_count && w->solver.joined[i] >= 0);
+}
 /* Sets forces and torques of a domain's bodies to those that produce the solved velocities in the
    coming step. Gravity is not part of them. Before, they are those of force fields, whose work, as
-   that of impulses, is exact with the mean of the velocities before and after the step. */
+   that of impulses, is exact with the mean of the velocities before and after the step. The torque
+   on a free body stays that of the fields, without round-off, so that the isolated bodies of >>near
+   have a torque of exactly 0. */
 static void demi_movers_force(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
@@ -93,6 +99,7 @@ static void demi_movers_force(dem_world *w, int d) {
             const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
             const dem_vec3 local = dem_quat_unrotate(q, demi_at(m->w));
             const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*local.x, I.y*local.y, I.z*local.z));
+            if (demi_mover_free(w, i)) continue;
             demi_put(torque, demi_scale(demi_sub(L, demi_at(w->bodies.angular + 4*i)), per));
         } else
             for (k = 0; k < 3; k++)

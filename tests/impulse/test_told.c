@@ -1,0 +1,114 @@
+/* What the solved impulses become: forces on bodies, the list of contacts, and the state from which a run
+   continues. Each test goes over the kinds of grains. */
+#define DEM_IMPLEMENTATION
+#include "../../dem.h"
+#include "../test.h"
+#include "../scene.h"
+
+enum { BALL, CLUMP, EGG, CUBE, MIXED, KINDS };
+static const double round_off = sizeof(dem_real) == 4 ? 1e-5 : 1e-12;
+
+/* A world without gravity, with a shape of each kind: ids 1 to 3 for CLUMP to CUBE. */
+static dem_world *made(double dt, double friction, double restitution, dem_material *m) {
+    static const dem_real two[6] = {DEM_R(-5e-4), 0, 0, DEM_R(5e-4), 0, 0};
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_cluster_desc clump = DEM_CLUSTER_DESC;
+    dem_world *world;
+    desc.response = DEM_RESPONSE_IMPULSES;
+    desc.dt = (dem_real)dt;
+    desc.threads = 1;
+    desc.orientations = 1;
+    world = dem_world_create(&desc);
+    *m = scene_material(world, 0, restitution, friction, 0);
+    clump.count = 2;
+    clump.positions = two;
+    clump.radius = DEM_R(8e-4);
+    clump.mass = DEM_CLUSTER_SUM;
+    dem_shape_cluster_add(world, &clump);
+    dem_shape_ellipsoid_add(world, at(1.04e-3, 1.057e-3, 1.39e-3));
+    scene_box(world, 1.3e-3, 1.3e-3, 1.6e-3);
+    return world;
+}
+static dem_body grain(dem_world *world, dem_material m, int kind, dem_vec3 x, dem_quat q) {
+    dem_shape shape;
+    shape.id = kind;
+    return kind == BALL ? dem_sphere_add(world, m, DEM_R(1e-3), x) : dem_body_add(world, m, shape, x, q);
+}
+/* 40 grains that fly about, in a box or in free space. */
+static void fill(dem_world *world, dem_material m, int kind, int walls, uint64_t seed) {
+    int i, k;
+    for (k = 0; k < 3 && walls; k++) {
+        const double n[3] = {k == 0, k == 1, k == 2}, to = k == 2 ? 8.1e-3 : 0.0112;
+        dem_wall_plane_add(world, m, at(-1.6e-3*n[0], -1.6e-3*n[1], -1.6e-3*n[2]), at(n[0], n[1], n[2]));
+        dem_wall_plane_add(world, m, at(to*n[0], to*n[1], to*n[2]), at(-n[0], -n[1], -n[2]));
+    }
+    for (i = 0; i < 40; i++) {
+        const dem_vec3 x = at(0.0032*(i%4), 0.0032*(i/4%4), 0.0032*(i/16));
+        const dem_quat q = scene_turn(&seed);
+        const dem_body b = grain(world, m, kind == MIXED ? i%KINDS%MIXED : kind, x, q);
+        const dem_vec3 v = scene_at(&seed, 2, -1, 2, -1, 2, -1);
+        scene_move(world, b, v, scene_at(&seed, 200, -100, 200, -100, 200, -100));
+    }
+}
+/* 1 if two files have the same bytes. */
+static int same(const char *one, const char *other) {
+    FILE *a = fopen(one, "rb"), *b = fopen(other, "rb");
+    int x = 0, y = a && b ? 0 : 1;
+    while (a && b && x == y && x != EOF) { x = fgetc(a); y = fgetc(b); }
+    if (a) fclose(a);
+    if (b) fclose(b);
+    return x == y;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("impulses: the torque on a grain that touches nothing is exactly 0, whatever its shape") {
+        int kind, k;
+        for (kind = BALL; kind < MIXED; kind++) {
+            dem_material m;
+            dem_world *world = made(1e-4, 0.3, 0.5, &m);
+            const dem_body b = grain(world, m, kind, at(0, 0, 0), dem_quat_make(1, 0, 0, 0));
+            scene_move(world, b, at(1, 2, 3), at(50, 60, -70));
+            for (k = 0; k < 50; k++) {
+                dem_body_state s;
+                CHECK_EQ(scene_step(world, 1), DEM_OK);
+                s = scene_state(world, b);
+                CHECK(!(fabs((double)s.torque.x) + fabs((double)s.torque.y) + fabs((double)s.torque.z) > 0));
+            }
+            dem_world_destroy(world);
+        }
+    }
+    /* wherever a run is cut, also between two pruned lists and while some grains are isolated */
+    TEST("impulses: a restart continues to the bit for grains of every kind, with and without walls") {
+        static const char *const path[] = {"build/tmp/told_1.ckpt", "build/tmp/told_2.ckpt"};
+        int kind, walls, seed, k, i;
+        for (kind = BALL; kind < KINDS; kind++)
+            for (walls = 0; walls < 2; walls++)
+                for (seed = 0; seed < 4; seed++)
+                    for (k = 5; k < 80; k += 18) {
+                        dem_material m;
+                        dem_world *one = made(1e-4, 0, 0.37, &m), *two = made(1e-4, 0, 0.37, &m);
+                        fill(one, m, kind, walls, (uint64_t)seed);
+                        fill(two, m, kind, walls, 9);   /* what the file replaces */
+                        CHECK_EQ(scene_step(one, k), DEM_OK);
+                        CHECK_EQ(dem_checkpoint_write(one, path[0]), DEM_OK);
+                        CHECK_EQ(dem_checkpoint_read(two, path[0]), DEM_OK);
+                        CHECK_EQ(dem_checkpoint_write(two, path[1]), DEM_OK);
+                        CHECK(same(path[0], path[1]));
+                        for (i = 0; i < 10; i++) {
+                            CHECK_EQ(scene_step(one, 1), DEM_OK);
+                            CHECK_EQ(scene_step(two, 1), DEM_OK);
+                        }
+                        CHECK_EQ(dem_world_hash_get(one), dem_world_hash_get(two));
+                        CHECK_EQ(dem_checkpoint_write(one, path[0]), DEM_OK);
+                        CHECK_EQ(dem_checkpoint_write(two, path[1]), DEM_OK);
+                        CHECK(same(path[0], path[1]));
+                        dem_world_destroy(one);
+                        dem_world_destroy(two);
+                    }
+        remove(path[0]);
+        remove(path[1]);
+    }
+    return test_end();
+}
