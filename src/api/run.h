@@ -346,13 +346,14 @@ typedef struct dem_contact_info {
    number. `out` or null. The contact history does not change. A contact of two polyhedra, or of one
    with a wall, is written as up to four (dem_shape_polyhedron_add). Contacts of two spheres are
    those of the present state; all others, and with impulses all, are as the last computation of
-   forces has left them. After bodies, walls or materials have changed, call dem_contacts_each
-   first: it computes them. dem_candidates_rebuild makes only the list. Returns -1 if there is no
-   list: before the first step, and after bodies or walls have changed. */
+   forces has left them. With impulses these forces, gravity and force fields together give the
+   change of the velocities in the coming step. After bodies, walls or materials have changed, call
+   dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the list. Returns -1
+   if there is no list: before the first step, and after bodies or walls have changed. */
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
 /* Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a
    pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all;
-   impulses: 11); vectors as seen from a. Values that the function writes there count from the
+   impulses: 14); vectors as seen from a. Values that the function writes there count from the
    next step on. */
 typedef void (*dem_contact_fn)(const dem_contact_info *contact, dem_real *memory, void *user);
 /* Calls `fn` for every contact, those with walls included, and returns their number. With a law

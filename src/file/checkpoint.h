@@ -18,7 +18,7 @@
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 24 };
+enum { DEMI_CHECKPOINT_VERSION = 25 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */

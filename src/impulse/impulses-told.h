@@ -154,7 +154,8 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
             moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per,
             demi_dot(after, c->normal), s->beside[m->at].turns,
-            demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride])};
+            demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride]),
+            c->normal.x, c->normal.y, c->normal.z};
         for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
         part[0] = -(double)demi_dot(demi_sub(p, c->slip), u);
         part[1] = -(double)demi_dot(c->slip, u);
@@ -389,19 +390,21 @@ static void demi_due_book(dem_world *w) {
     w->booked.throughput += fabs(w->booked.due[3]) + fabs(w->booked.due[4]);
 }
 /* Returns 1 if entry p of domain d's pruned neighbour list has an impulse or overlaps, and fills
-   *out and *gap unless out is null: see demi_response_row. */
+   *out and *gap unless out is null: see demi_response_row. The normal of a constraint is that of
+   its detection, half a step ahead of the present positions, because its force acts along it. */
 static int demi_impulses_info(const dem_world *w, int d, int p, dem_contact_info *out,
                               dem_vec3 *gap) {
     const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)p;
     const dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
     const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
-    const dem_vec3 way = demi_near_way(w, at);
+    const dem_real *n = memory + DEMI_IMPULSE_NORMAL*stride;
+    const dem_vec3 way = demi_near_way(w, at), normal = demi_v(n[0], n[stride], n[2*stride]);
     const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
     if (!(memory[6*stride] > 0) && !(memory[7*stride] > 0) && !(overlap > 0)) return 0;
     if (!out) return 1;
-    out->normal = demi_scale(way, 1/l);
+    out->normal = demi_dot(normal, normal) > 0 ? normal : demi_scale(way, 1/l);
     out->overlap = overlap;
-    *gap = way;
+    *gap = demi_scale(out->normal, l);
     out->force = demi_sub(demi_v(-memory[0], -memory[stride], -memory[2*stride]),
                           demi_scale(out->normal, memory[6*stride] - memory[7*stride]));
     return 1;

@@ -82,7 +82,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     out->wall = out->further = 0;
     out->point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a),
         demi_near_arm(w, at, 0)), demi_scale(gap, ra/(ra + rb))));
-    if (branch) *branch = demi_near_bodies_way(w, at);
+    if (branch) *branch = demi_response_is(w, DEMI_LAWS) ? demi_near_bodies_way(w, at) : gap;
     return 1;
 }
 /* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that

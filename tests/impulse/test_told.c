@@ -34,7 +34,8 @@ static dem_body grain(dem_world *world, dem_material m, int kind, dem_vec3 x, de
     shape.id = kind;
     return kind == BALL ? dem_sphere_add(world, m, DEM_R(1e-3), x) : dem_body_add(world, m, shape, x, q);
 }
-/* 40 grains that fly about, in a box or in free space. */
+/* 40 grains that fly about, in a box or in free space. Their ids are the same in every world. */
+static dem_body grains[40];
 static void fill(dem_world *world, dem_material m, int kind, int walls, uint64_t seed) {
     int i, k;
     for (k = 0; k < 3 && walls; k++) {
@@ -45,9 +46,9 @@ static void fill(dem_world *world, dem_material m, int kind, int walls, uint64_t
     for (i = 0; i < 40; i++) {
         const dem_vec3 x = at(0.0032*(i%4), 0.0032*(i/4%4), 0.0032*(i/16));
         const dem_quat q = scene_turn(&seed);
-        const dem_body b = grain(world, m, kind == MIXED ? i%KINDS%MIXED : kind, x, q);
         const dem_vec3 v = scene_at(&seed, 2, -1, 2, -1, 2, -1);
-        scene_move(world, b, v, scene_at(&seed, 200, -100, 200, -100, 200, -100));
+        grains[i] = grain(world, m, kind == MIXED ? i%MIXED : kind, x, q);
+        scene_move(world, grains[i], v, scene_at(&seed, 200, -100, 200, -100, 200, -100));
     }
 }
 /* 1 if two files have the same bytes. */
@@ -109,6 +110,53 @@ int main(int argc, char **argv) {
                     }
         remove(path[0]);
         remove(path[1]);
+    }
+    TEST("impulses: the listed forces on a grain are m dv/dt - m g, for grains of every kind and for walls") {
+        static const char path[] = "build/tmp/told.ckpt";
+        static dem_contact_info list[2000], again[2000];
+        int kind, steps, i, n;
+        for (kind = BALL; kind < KINDS; kind++) {
+            dem_material m;
+            dem_world *world = made(1e-4, 0.3, 0.5, &m), *other = made(1e-4, 0.3, 0.5, &m);
+            int pushed = 0, borne = 0;        /* contacts of two grains, and of a grain and a wall */
+            fill(world, m, kind, 1, 5);
+            fill(other, m, kind, 1, 6);
+            dem_world_gravity_set(world, at(0, 0, -10));
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            for (steps = 0; steps < 300; steps++) {
+                dem_body_state before[40], now;
+                dem_vec3 sum[40];
+                memset(sum, 0, sizeof sum);
+                n = dem_contacts_get(world, list, 2000);
+                for (i = 0; i < n; i++) {
+                    dem_vec3 *a = &sum[list[i].a.slot - 1], *b = list[i].wall ? 0 : &sum[list[i].b.slot - 1];
+                    const dem_vec3 f = list[i].force;
+                    *a = dem_vec3_make(a->x + f.x, a->y + f.y, a->z + f.z);
+                    if (b) *b = dem_vec3_make(b->x - f.x, b->y - f.y, b->z - f.z);
+                    if (list[i].wall) borne++; else pushed++;
+                }
+                for (i = 0; i < 40; i++) before[i] = scene_state(world, grains[i]);
+                CHECK_EQ(scene_step(world, 1), DEM_OK);
+                for (i = 0; i < 40; i++) {
+                    const double per = (double)before[i].mass/1e-4, near = 2*round_off*per; /* 2 m/s */
+                    now = scene_state(world, grains[i]);
+                    CHECK_NEAR(sum[i].x, per*((double)now.velocity.x - (double)before[i].velocity.x), near);
+                    CHECK_NEAR(sum[i].y, per*((double)now.velocity.y - (double)before[i].velocity.y), near);
+                    CHECK_NEAR(sum[i].z, per*((double)now.velocity.z - (double)before[i].velocity.z + 1e-3), near);
+                    CHECK_NEAR(sum[i].x, before[i].force.x, near);
+                }
+            }
+            CHECK(pushed > 100 && borne > 100);
+            n = dem_contacts_get(world, list, 2000);
+            dem_world_gravity_set(other, at(0, 0, -10));
+            CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(other, path), DEM_OK);
+            CHECK_EQ(dem_contacts_get(other, again, 2000), n);
+            for (i = 0; i < n; i++) CHECK(!memcmp(&list[i].force, &again[i].force, sizeof list[i].force));
+            dem_world_destroy(world);
+            dem_world_destroy(other);
+        }
+        remove(path);
     }
     return test_end();
 }
