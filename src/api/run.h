@@ -337,7 +337,7 @@ DEM_API void dem_trials_print(const dem_trials *trials, FILE *out);
 typedef struct dem_contact_info {
     dem_body a, b;                       /* b is null for a contact with a wall */
     int32_t wall;                        /* dem_wall id; 0: b is a body */
-    dem_vec3 point, normal;              /* m; unit, from a to b */
+    dem_vec3 point, normal;              /* m, on the surface of a wall; unit, from a to b */
     dem_real overlap;                    /* m; < 0: a gap within the range of the law */
     dem_vec3 force;                      /* N, on a */
     int further;                         /* 1: another point of the polyhedron's contact before */
@@ -496,9 +496,11 @@ DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall wall, dem
 /* Stress and fabric of the whole domain. Tensors are xx yy zz xy xz yz. */
 typedef struct dem_stress {
     double volume, solid;     /* m3, of the domain; fraction that bodies fill */
-    /* Pa, pressure positive: of contacts, the sum of force x branch over the volume, where a
-       contact with a wall acts from the centre to the contact; of motion, the sum of m v v over the
-       volume, about the mean velocity; both together */
+    /* Pa, pressure positive: of contacts, the sum of force x branch over the volume; of motion, the
+       sum of m v v over the volume, about the mean velocity; both together. The branch of a contact
+       with a wall ends on the surface of the wall. At rest without weight, stress x volume is
+       therefore the sum of force x position over the contact points on all walls: between two
+       planes their force x distance, at curved walls that sum over the curved surface. */
     double contact[6], kinetic[6], total[6];
     double fabric[6];         /* mean of n n over the contacts of two bodies; its trace is 1 */
     int contacts;             /* of two bodies */
@@ -550,7 +552,7 @@ typedef struct dem_field_data {
        flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over the volume of the cell
        stress: cells x 6, Pa, pressure positive: sum over contacts of force x branch over the volume
        of the cell. A contact of two grains acts along the line between their centres, and each
-       grain accounts for its half; one with a wall acts from the centre to the contact.
+       grain accounts for its half; one with a wall acts from the centre to the wall's surface.
        contacts: cells: sum of the number of contacts of the grains */
     const double *flux, *stress, *contacts;
 } dem_field_data;

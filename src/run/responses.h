@@ -85,17 +85,27 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     if (branch) *branch = demi_response_is(w, DEMI_LAWS) ? demi_near_bodies_way(w, at) : gap;
     return 1;
 }
+/* Returns the vector from the centre of a to the point at which a wall acts on it, m. It is on the
+   surface of the wall, whereas the arm leads to that of a, which overlaps. The arm of polyhedra
+   leads to the wall if they press on it, otherwise half way across the gap. At both points the
+   normal force has the same moment; that of impulses acts at the arm. */
+static dem_vec3 demi_wall_branch(const dem_world *w, const demi_kept *c) {
+    const int pressing = demi_response_is(w, DEMI_PRESSING);
+    const dem_real inset = pressing && c->odd ? c->more.inset : 1;
+    dem_real past = c->overlap/c->slope - (1 - inset)*demi_dot(c->arm_a, c->normal);
+    if (c->corners) past = pressing && c->overlap > 0 ? 0 : c->overlap/2;
+    return demi_sub(demi_scale(c->arm_a, inset), demi_scale(c->normal, past));
+}
 /* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
-   users see. */
-static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
+   users see. branch: m, from the centre of a to the contact point. */
+static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_vec3 branch,
+                           dem_contact_info *out) {
     const demi_periods p = demi_periods_of(w);
-    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
     out->a = dem_body_id_get(w, c->a);
     out->b = dem_body_id_get(w, c->b);
     out->wall = c->b < 0 ? w->walls[c->wall].id : 0;
     out->normal = c->normal;
-    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
-    out->point = demi_place_of(&p, x);
+    out->point = demi_place_of(&p, demi_add(demi_at(w->bodies.pos + 4*c->a), branch));
     out->overlap = c->overlap;
     out->force = c->force;
     out->further = c->corner > 0;
@@ -137,8 +147,9 @@ static int demi_walk_look(const dem_world *w, demi_walk *c, int at) {
     if (w->joint_count && demi_parted(w, c->a, c->b, c->own ? c->own->wall : -1)) return 0;
     if (c->blind) return 1;
     if (c->own) {
-        demi_kept_info(w, c->own, &c->info);
-        c->branch = c->b < 0 ? c->own->arm_a : demi_sub(c->own->arm_a, c->own->arm_b);
+        c->branch = c->b < 0 ? demi_wall_branch(w, c->own) : c->own->arm_a;
+        demi_kept_info(w, c->own, c->branch, &c->info);
+        if (c->b >= 0) c->branch = demi_sub(c->branch, c->own->arm_b);
     }
     if (!c->info.further) c->counted = 0;
     c->counts = !c->counted && (!solved ? c->info.overlap > 0 : c->own ? c->own->memory[6] > 0
