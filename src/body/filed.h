@@ -90,6 +90,22 @@ static int demi_carry_collect(dem_world *w) {
 DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
     return w->kept_now + w->kept_first[d];
 }
+/* True if a contact is a later part of one with several walls: it continues what the first does. */
+DEM_INLINE int demi_kept_later(const demi_kept *c) { return c->odd && c->more.rank > 0; }
+/* Returns the index of the old contact that a later part c continues: of the parts of the one that
+   its first part continues, that with the same wall, else the first. end: of the body's old
+   contacts. */
+static int demi_kept_part(const dem_world *w, int d, const demi_kept *end, const demi_kept *c) {
+    const int from = c[-c->more.rank*c->corners].from;
+    const demi_kept *now = demi_kept_of(w, d), *o = from < 0 ? end : now + from;
+    do o += c->corners;
+    while (o < end && demi_kept_later(o) && o->wall != c->wall);
+    return o < end && demi_kept_later(o) ? (int)(o - now) : from;
+}
+/* The weight of friction of all parts of a contact. */
+DEM_INLINE dem_real demi_kept_whole(const demi_kept *c) {
+    return c->odd && c->more.part > 0 ? c->grip/c->more.part : c->grip;
+}
 /* Marks in met[] which materials have touched. Persistent contacts are marked when they begin.
    Pairs of spheres are examined only before a list is dropped: contacts shorter than the life of a
    list may be missed, lasting ones are always found. */

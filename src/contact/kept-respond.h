@@ -90,9 +90,9 @@ DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c
    did. */
 static const dem_real *demi_kept_past(const dem_world *w, const demi_kept *now, demi_kept *c) {
     const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
-    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? now[c->from].grip : c->held;
-    const dem_real more = ended ? ended->grip : 0, all = held + more;
-    const dem_real left = c->grip > all ? all/c->grip : 1;
+    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? demi_kept_whole(&now[c->from]) : c->held;
+    const dem_real more = ended ? demi_kept_whole(ended) : 0, all = held + more;
+    const dem_real grip = demi_kept_whole(c), left = grip > all ? all/grip : 1;
     int k;
     if (c->from >= 0 && (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)))
         return now[c->from].memory;
@@ -530,10 +530,21 @@ static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
                  demi_sub(demi_row(t->rows.torque[1], q),
                           demi_add(demi_cross(c->arm_b, aside), moment)));
 }
+/* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
+   while a has its part of all (demi_kept_more). Over all parts, the two are the same. */
+DEM_INLINE dem_vec3 demi_kept_own(demi_kept_tile *t, int q, dem_vec3 *moment) {
+    const demi_kept *c = t->contact[q];
+    const dem_real press = t->share[q]*t->rows.repulsion[q];
+    *moment = demi_row(t->rows.moment, q);
+    if (!c->odd || !(c->more.part > 0)) return demi_row(t->rows.force, q);
+    *moment = demi_sub(*moment, demi_scale(c->more.turn, press));
+    return demi_sub(demi_row(t->rows.force, q), demi_scale(c->more.lean, press));
+}
 /* Adds the force of row q to both bodies, or to body a and the sums of its wall. */
 static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
-    const demi_kept *c = t->contact[q];
+    demi_kept *c = t->contact[q];
     const dem_vec3 force = demi_row(t->rows.force, q);
+    c->force = force;
     demi_force_add(w->bodies.force + 4*c->a, force);
     demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
     if (c->b >= 0) {                            /* several contacts may share a slot */
@@ -543,8 +554,9 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
     } else {
         const demi_wall *wall = &w->walls[c->wall];
         demi_wall_sum *sum = &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall];
-        demi_wall_sum_add(w, sum, c->wall, t->at[q], force, demi_row(t->rows.moment, q),
-                          t->surface[q]);
+        dem_vec3 moment;
+        c->force = demi_kept_own(t, q, &moment);
+        demi_wall_sum_add(w, sum, c->wall, t->at[q], c->force, moment, t->surface[q]);
         if (wall->glides)                       /* only friction does work on a gliding surface */
             sum->power += (double)(t->grip[q]*demi_dot(demi_row(t->rows.tangent, q),
                 demi_glide_at(wall, &wall->pose, c->normal)));
@@ -586,7 +598,6 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
         demi_kept *c = t->contact[q];
         for (e = 0; e < r->keep; e++) c->memory[e] = rows->memory[e][q];
         if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        c->force = demi_row(rows->force, q);
         demi_kept_push(w, d, t, q);
         if (w->cell.on && c->b >= 0)
             demi_tile_cell(w, rows, q, demi_sub(c->arm_a, c->arm_b), c->slope*c->lift,

@@ -146,7 +146,7 @@ static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int o
             o->part_a != c->part_a || o->part_b != c->part_b ||
             (how != DEMI_FIT_SLID && !demi_kept_one(w, o, c)) ||
             (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
-            (o->element != c->element && how == DEMI_FIT_TURNED)) continue;
+            (o->element != c->element && how == DEMI_FIT_TURNED) || demi_kept_later(o)) continue;
         if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
         if (how == DEMI_FIT_NEAREST) {
             const dem_vec3 way = demi_sub(o->arm_a, c->arm_a);
@@ -309,16 +309,20 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
 
 /* Sets `held` of n contacts of one body with one partner or wall: the grip (weight of friction)
    that each inherits from the step before. Contacts that continue the same old one divide its grip
-   in proportion to their own. now: the old list of the work group. */
+   in proportion to their own. Of a contact in parts all have that of all its parts. now: the old
+   list of the work group. */
 static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
     int i, k;
     if (n == 1) { c->held = -1; return; }       /* do not load the old one yet */
     for (k = 0; k < n; k++) {
+        const dem_real own = demi_kept_whole(&c[k]);
         dem_real all = 0;
         if (c[k].from < 0) continue;
-        for (i = 0; i < n; i++) if (c[i].from == c[k].from) all += c[i].grip;
-        c[k].held = now[c[k].from].grip;
-        if (all > c[k].grip) c[k].held *= c[k].grip/all;
+        if (demi_kept_later(&c[k])) { c[k].held = c[k - c[k].corners].held; continue; }
+        for (i = 0; i < n; i++)
+            if (c[i].from == c[k].from && !demi_kept_later(&c[i])) all += demi_kept_whole(&c[i]);
+        c[k].held = demi_kept_whole(&now[c[k].from]);
+        if (all > own) c[k].held *= own/all;
     }
 }
 /* Splits contact c of two polyhedra into the four corners of the parallelogram over which its
@@ -618,7 +622,8 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
                              demi_response_is(w, DEMI_PRESSING) ? DEMI_FIT_TURNED
                                                                 : DEMI_FIT_NEAREST);
     for (i = 0, c = fresh; i < count; i++, c++) {
-        if (c->from < 0 && olds)
+        if (demi_kept_later(c)) c->from = demi_kept_part(w, d, &old[olds], c);
+        else if (c->from < 0 && olds)
             c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(w, old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
@@ -712,11 +717,11 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
             : demi_surface_of(w, demi_kept_surface(w, &old[e]));
         dem_real nearest = DEM_R(0.95);
         demi_kept *heir = 0;
-        if (!wall || !(old[e].grip > 0) ||
+        if (!wall || !(old[e].grip > 0) || demi_kept_later(&old[e]) ||
             !(demi_faceted(wall) || demi_wall_is(wall, DEMI_CROSSED))) continue;
         for (i = 0; i < n && c[i].from != first + e; i++) {
             const dem_real along = demi_dot(old[e].normal, c[i].normal);
-            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 ||
+            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 || demi_kept_later(&c[i]) ||
                 c[i].corner != old[e].corner ||
                 !(2*old[e].overlap > c[i].overlap) || !demi_kept_beside(w, &old[e], &c[i]))
                 continue;
@@ -725,6 +730,7 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
         }
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
+    for (i = 0; i < n; i++) if (demi_kept_later(&c[i])) c[i].send = c[i - c[i].corners].send;
 }
 /* True if the point of c on its wall lies on another surface too. first, last: the candidates of
    the body in work group d. Planes, cylinders and surfaces of facets can cover others. */

@@ -253,6 +253,13 @@ static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, c
     c->corners = place->corners;
     demi_kept_odd(c)->couple = place->couple;
     c->more.spread = place->spread;
+    if (place->part > 0) {
+        c->wall = place->wall;
+        c->more.part = place->part;
+        c->more.rank = place->rank;
+        c->more.lean = place->lean;
+        c->more.turn = place->turn;
+    }
     c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
     c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
 }

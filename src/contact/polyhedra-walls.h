@@ -4,6 +4,9 @@
    frame of the wall. Surfaces whose normals differ by more than 18 degrees are separate contacts.
    Each has the overlap of the whole wall, and takes part in its energy in proportion to its force.
    Each consists of four contact points, the corners of the patch that its pressure is spread over.
+   If several walls of a joined surface are under the patch, each wall has these four points, and
+   bears the part of the force that its own pressure has. However a surface is divided into walls,
+   stiffness, damping and friction are thus those of one wall.
 
    A surface acts on one side: that of the facet, or piece, nearest to the body's centre. If it ends
    near the body, it acts on the side beyond which there is less of the body, and curtains extend
@@ -12,38 +15,78 @@
    contact points per direction.
    --------------------------------------------------------------------------------------------- */
 
-/* Pressures on one surface, grouped by the direction of the surface and, if it is joined, by
-   walls. */
+/* What the pressure of one group does to one wall. */
+typedef struct demi_flats_wall {
+    int group, wall;
+    dem_vec3 shift;                            /* m, image of the first element */
+    demi_d3 force, torque;                     /* as in demi_pressure */
+} demi_flats_wall;
+/* Pressures on one surface, grouped by its direction and its walls' materials. */
 typedef struct demi_flats {
-    int count;
-    const int32_t *whose;                      /* as in demi_wall; may be null */
+    const dem_world *w;
+    const demi_wall *wall;                     /* the surface */
+    int count, walls;
     dem_vec3 now;                              /* m, shift of the image that is examined */
     int32_t element[DEMI_FLATS];               /* the first of each group */
     dem_vec3 shift[DEMI_FLATS];                /* m, its image */
     demi_pressure press[DEMI_FLATS];
+    demi_flats_wall part[DEMI_FLATS_WALLS];
 } demi_flats;
 static void demi_flats_begin(demi_flats *f, const demi_view *v) {
-    f->count = 0;
-    f->whose = v->wall->scale ? 0 : v->wall->whose;
+    f->w = v->w;
+    f->wall = v->wall;
+    f->count = f->walls = 0;
 }
-/* Adds the pressure on an element to the group within 18 degrees, or begins a new group. */
-static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
+/* True if two elements are of one wall or of walls that friction cannot tell apart. */
+static int demi_flats_alike(const demi_flats *f, int32_t element, int32_t other) {
+    const demi_wall *a = &f->w->walls[demi_surface_wall(f->w, f->wall, element)];
+    const demi_wall *b = &f->w->walls[demi_surface_wall(f->w, f->wall, other)];
+    const dem_vec3 glide = demi_rotate(b->pose.rotation, b->glide);
+    return a == b || (a->material == b->material && a->glides == b->glides &&
+        (!a->glides || !(demi_length(demi_sub(demi_rotate(a->pose.rotation, a->glide), glide)) >
+                         DEM_R(1e-6)*demi_length(glide))));
+}
+/* Notes a force and torque of a group on a wall; if there is no room, on another of its walls. */
+static void demi_flats_on(demi_flats *f, int group, int wall, demi_d3 force, demi_d3 torque) {
+    demi_flats_wall *p = 0;
+    int i;
+    for (i = 0; i < f->walls && !(p && p->wall == wall); i++)
+        if (f->part[i].group == group) p = &f->part[i];
+    if (!(p && p->wall == wall) && f->walls < DEMI_FLATS_WALLS) {
+        p = &f->part[f->walls++];
+        memset(p, 0, sizeof *p);
+        p->group = group;
+        p->wall = wall;
+        p->shift = f->now;
+    }
+    if (!p) return;
+    p->force = demi_d3_add(p->force, force);
+    p->torque = demi_d3_add(p->torque, torque);
+}
+/* Adds the pressure on an element to the group within 18 degrees, or begins a new group. Returns
+   its index, or -1 if there is no pressure. */
+static int demi_flats_join(demi_flats *f, int32_t element, const demi_pressure *s) {
     const double size = demi_d3_length(s->force);
     double most = -2;
     int i, best = 0;
-    if (!(s->sum > 0) || !(size > 0)) return;
+    if (!(s->sum > 0) || !(size > 0)) return -1;
     for (i = 0; i < f->count; i++) {
         const demi_d3 F = f->press[i].force;
         const double along = demi_d3_dot(F, s->force)/(size*demi_d3_length(F));
-        if (f->whose && f->whose[f->element[i]] != f->whose[element] && f->count < DEMI_FLATS)
-            continue;
+        if (f->count < DEMI_FLATS && !demi_flats_alike(f, f->element[i], element)) continue;
         if (along > most) { most = along; best = i; }
     }
     if (most < 0.95 && f->count < DEMI_FLATS) {
         f->shift[f->count] = f->now;
         f->element[f->count] = element;
-        f->press[f->count++] = *s;
+        f->press[best = f->count++] = *s;
     } else demi_pressure_add(&f->press[best], s);
+    return best;
+}
+static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
+    const int group = demi_flats_join(f, element, s);
+    if (group >= 0)
+        demi_flats_on(f, group, demi_surface_wall(f->w, f->wall, element), s->force, s->torque);
 }
 /* Energy I of all groups, m3; < 0: the body's centre is beyond the surface. */
 static double demi_flats_energy(const demi_flats *f) {
@@ -61,7 +104,7 @@ static double demi_flats_energy(const demi_flats *f) {
 static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
     const double a = demi_flats_energy(seen), b = demi_flats_energy(seen + 1), all = a + b;
     double share[2];
-    int i, k;
+    int i, k, e, group;
     share[1] = a < 0 || b < 0 ? a < 0 : 3*b < a;
     share[0] = 1 - share[1];
     /* the centre is beyond: one side has at least what is left on the other */
@@ -77,8 +120,35 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
             demi_pressure_scale(&press, share[k]);
             if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: stop */
             out->now = seen[k].shift[i];
-            demi_flats_add(out, seen[k].element[i], &press);
+            group = demi_flats_join(out, seen[k].element[i], &press);
+            for (e = 0; e < seen[k].walls && group >= 0; e++) {
+                const demi_flats_wall *p = seen[k].part + e;
+                out->now = p->shift;
+                if (p->group == i)
+                    demi_flats_on(out, group, p->wall, demi_d3_scale(p->force, share[k]),
+                                  demi_d3_scale(p->torque, share[k]));
+            }
         }
+}
+/* Makes the four contact points t those of one wall's part of its group, of patch p. weight: sum of
+   the forces of the group's walls. */
+static void demi_flats_divide(const demi_flats_wall *part, const demi_patch *p, double weight,
+                              const dem_real *R, int rank, demi_touching *t) {
+    const double phi = demi_d3_length(part->force)/weight, unit = 1/(phi*p->force);
+    const demi_d3 n = demi_d3_of(p->normal), at = demi_d3_of(p->point);
+    const demi_d3 lean = demi_d3_sub(demi_d3_scale(part->force, unit), n);
+    const demi_d3 own = demi_d3_sub(part->torque, demi_d3_cross(at, part->force));
+    const demi_d3 turn = demi_d3_plus(demi_d3_scale(own, unit), -(double)p->couple, n);
+    int k;
+    for (k = 0; k < 4; k++) {
+        t[k].wall = part->wall;
+        t[k].rank = rank;
+        t[k].part = (dem_real)phi;
+        t[k].share *= (dem_real)phi;
+        t[k].shift = part->shift;
+        t[k].lean = demi_rotate(R, demi_d3_real(lean));
+        t[k].turn = demi_rotate(R, demi_d3_real(turn));
+    }
 }
 /* Writes the contact points of all groups, found in a frame of axes R. Returns their number. */
 static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
@@ -87,13 +157,16 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     const demi_part local = demi_part_local(R, part);
     double shared = 0, force = 0, overlap;
     demi_patch p;
-    int i, k, count = 0;
+    int i, k, e, count = 0;
     for (i = 0; i < f->count; i++) {
         shared += f->press[i].shared;
         force += demi_d3_length(f->press[i].force);
     }
     overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
     for (i = 0; i < f->count && overlap > 0; i++) {
+        const demi_flats_wall *part = f->part, *first = 0;
+        double weight = 0;
+        int rank = 0;
         if (!demi_pressure_patch(&f->press[i], &local.q, 0, &p)) continue;
         for (k = 0; k < 4; k++) {
             demi_touching *t = &out[count++];
@@ -109,7 +182,18 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
             t->spread = demi_rotate(R, demi_patch_spread(&p, k));
             t->point = demi_add(demi_add(v->at, demi_rotate(R, p.point)), t->spread);
             t->shift = f->shift[i];
+            t->part = 0;
         }
+        for (e = 0; e < f->walls; e++)
+            if (part[e].group == i) weight += demi_d3_length(part[e].force);
+        for (e = 0; e < f->walls; e++) {
+            if (part[e].group != i || !(demi_d3_length(part[e].force) > 0)) continue;
+            if (!first) { first = &part[e]; continue; }
+            memcpy(&out[count], &out[count - 4*(++rank)], 4*sizeof *out);
+            demi_flats_divide(&part[e], &p, weight, R, rank, &out[count]);
+            count += 4;
+        }
+        if (rank) demi_flats_divide(first, &p, weight, R, 0, &out[count - 4*(rank + 1)]);
     }
     return count;
 }
@@ -583,8 +667,7 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
         t->image = sheets->image[i];
         for (k = 0; k < 2; k++) {
             t->way = k ? -sheets->way[i] : sheets->way[i];
-            seen[k].count = 0;
-            seen[k].whose = flats->whose;
+            demi_flats_begin(&seen[k], t->start);
             if (!k || seen[0].count) demi_sheet_seen(t, s, &seen[k]);
         }
         demi_flats_sides(seen, flats);
@@ -620,7 +703,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
         if (demi_tessellation_beyond(start->w, wall, v.x, &n)) {
             memset(&press, 0, sizeof press);
             demi_pressure_beyond(&s, demi_d3_of(n), &press);
-            flats.count = 0;
+            flats.count = flats.walls = 0;
             flats.now = v.shift;
             demi_flats_add(&flats, v.element[0], &press);
             return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);

@@ -120,6 +120,9 @@ typedef struct demi_touching {
     dem_vec3 spread;               /* this and the rest: of polyhedra, as in demi_kept */
     dem_real slope, couple, deep;
     int32_t corner, corners;
+    int32_t wall, rank;            /* this and the rest: as in demi_kept_more, if part > 0 */
+    dem_real part;
+    dem_vec3 lean, turn;
 } demi_touching;
 /* A side or corner of a facet within reach of a body. >>touch uses these links to find which facets
    are connected and whether they form a ring around the body. */
@@ -172,6 +175,11 @@ typedef struct demi_kept_more {
     dem_real inset;                /* the normal force acts at inset*arm_a */
     dem_vec3 spread;               /* m, from the centre of pressure to this point */
     dem_real couple;               /* m: moment about the normal, over the normal force */
+    /* if a polyhedron touches several walls of one surface in one contact: */
+    dem_real part;                 /* this wall's part of it; 0: all */
+    dem_vec3 lean, turn;           /* 1, m: what the wall's force and moment have beyond that part,
+                                      over the normal force */
+    int32_t rank;                  /* 0: the first wall; others continue what the first does */
 } demi_kept_more;
 /* A persistent contact: any contact except sphere on sphere and, with springs, except those of
    spheres of clusters. (The history of two spheres is in the pruned neighbour list.) It exists as
@@ -301,7 +309,8 @@ enum {
     DEMI_ONLY_GAPS = 64            /* its function for polyhedra finds gaps, not pressure */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contact points of a grain with a sieve */
-enum { DEMI_FLATS = 6 };        /* separate contacts that a polyhedron may have with one wall */
+enum { DEMI_FLATS = 6 };        /* contacts that a polyhedron may have with one surface */
+enum { DEMI_FLATS_WALLS = 24 };                 /* parts of these, if it is of several walls */
 enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface of revolution */
 #define DEMI_SHAPES(X) \
     X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \

@@ -23,7 +23,8 @@ static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, 
         demi_kept *c = t->contact[q];
         dem_vec3 force, torque;
         if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        c->force = force = demi_row(t->rows.force, q);
+        c->force = demi_kept_own(t, q, &torque);
+        force = demi_row(t->rows.force, q);
         torque = demi_row(t->rows.torque[0], q);
         if (w->desc.planar) force.z = torque.x = torque.y = 0;
         demi_force_add(w->bodies.force + 4*c->a, demi_scale(force, sign));

@@ -272,19 +272,20 @@ static void demi_cross_index(dem_world *w) {
 /* Returns the largest number of contact points of one body with one wall. Its candidates in work
    group d begin at k; *end receives the first of the next body or wall. A polyhedron may have four
    points in each of the ways in which it touches (the two sides of facets, the skirts at open
-   edges), and four more by gaps. */
+   edges), and four more by gaps. A joined surface has them for each of its walls. */
 static int demi_places_of(const dem_world *w, int d, int k, int *end) {
     const int base = d*w->wall_stride, body = w->wall_body[base + k], id = w->wall_id[base + k];
     const demi_wall *wall = demi_surface_of(w, id);
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
     const int sets = wall->kind == DEMI_WALL_SIEVE ? 2 : 1, ways = sets*DEMI_FLATS;    /* wires */
+    const int parts = wall->whose ? DEMI_FLATS_WALLS : ways;
     int n = 0, flats = 0;
     for (; k < w->domains[d].walls && w->wall_body[base + k] == body &&
            w->wall_id[base + k] == id; k++) {
         n += kind->most;
         flats += kind->corners ? 4*ways + 4 : 8*ways;
     }
-    if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 8*ways);
+    if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 4*(ways + parts));
     *end = k;
     return w->bodies.shaped ? DEMI_MAX(n, flats) : n;
 }

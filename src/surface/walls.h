@@ -739,8 +739,12 @@ static void demi_wall_forget(dem_world *w, int wall) {
     int d, k, left;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         demi_kept *c = w->domains[d].kept ? demi_kept_of(w, d) : 0;
-        for (k = left = 0; k < w->domains[d].kept; k++)
+        for (k = left = 0; k < w->domains[d].kept; k++) {
+            const int next = k + 4;             /* the part of the next wall, if there is one */
             if (c[k].b >= 0 || c[k].wall != wall) c[left++] = c[k];
+            else if (next < w->domains[d].kept && demi_kept_later(&c[next]) &&
+                     !demi_kept_later(&c[k])) c[next].more.rank = 0;
+        }
         w->domains[d].kept = left;
     }
 }
