@@ -3015,7 +3015,7 @@ DEM_API void dem_trials_print(const dem_trials *trials, FILE *out);
 typedef struct dem_contact_info {
     dem_body a, b;                       /* b is null for a contact with a wall */
     int32_t wall;                        /* dem_wall id; 0: b is a body */
-    dem_vec3 point, normal;              /* m; unit, from a to b */
+    dem_vec3 point, normal;              /* m, on the surface of a wall; unit, from a to b */
     dem_real overlap;                    /* m; < 0: a gap within the range of the law */
     dem_vec3 force;                      /* N, on a */
     int further;                         /* 1: another point of the polyhedron's contact before */
@@ -3024,13 +3024,14 @@ typedef struct dem_contact_info {
    number. `out` or null. The contact history does not change. A contact of two polyhedra, or of one
    with a wall, is written as up to four (dem_shape_polyhedron_add). Contacts of two spheres are
    those of the present state; all others, and with impulses all, are as the last computation of
-   forces has left them. After bodies, walls or materials have changed, call dem_contacts_each
-   first: it computes them. dem_candidates_rebuild makes only the list. Returns -1 if there is no
-   list: before the first step, and after bodies or walls have changed. */
+   forces has left them. With impulses these forces, gravity and force fields together give the
+   change of the velocities in the coming step. After bodies, walls or materials have changed, call
+   dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the list. Returns -1
+   if there is no list: before the first step, and after bodies or walls have changed. */
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
 /* Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a
    pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all;
-   impulses: 11); vectors as seen from a. Values that the function writes there count from the
+   impulses: 14); vectors as seen from a. Values that the function writes there count from the
    next step on. */
 typedef void (*dem_contact_fn)(const dem_contact_info *contact, dem_real *memory, void *user);
 /* Calls `fn` for every contact, those with walls included, and returns their number. With a law
@@ -3173,9 +3174,11 @@ DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall wall, dem
 /* Stress and fabric of the whole domain. Tensors are xx yy zz xy xz yz. */
 typedef struct dem_stress {
     double volume, solid;     /* m3, of the domain; fraction that bodies fill */
-    /* Pa, pressure positive: of contacts, the sum of force x branch over the volume, where a
-       contact with a wall acts from the centre to the contact; of motion, the sum of m v v over the
-       volume, about the mean velocity; both together */
+    /* Pa, pressure positive: of contacts, the sum of force x branch over the volume; of motion, the
+       sum of m v v over the volume, about the mean velocity; both together. The branch of a contact
+       with a wall ends on the surface of the wall. At rest without weight, stress x volume is
+       therefore the sum of force x position over the contact points on all walls: between two
+       planes their force x distance, at curved walls that sum over the curved surface. */
     double contact[6], kinetic[6], total[6];
     double fabric[6];         /* mean of n n over the contacts of two bodies; its trace is 1 */
     int contacts;             /* of two bodies */
@@ -3227,7 +3230,7 @@ typedef struct dem_field_data {
        flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over the volume of the cell
        stress: cells x 6, Pa, pressure positive: sum over contacts of force x branch over the volume
        of the cell. A contact of two grains acts along the line between their centres, and each
-       grain accounts for its half; one with a wall acts from the centre to the contact.
+       grain accounts for its half; one with a wall acts from the centre to the wall's surface.
        contacts: cells: sum of the number of contacts of the grains */
     const double *flux, *stress, *contacts;
 } dem_field_data;
@@ -4327,6 +4330,9 @@ typedef struct demi_touching {
     dem_vec3 spread;               /* this and the rest: of polyhedra, as in demi_kept */
     dem_real slope, couple, deep;
     int32_t corner, corners;
+    int32_t wall, rank;            /* this and the rest: as in demi_kept_more, if part > 0 */
+    dem_real part;
+    dem_vec3 lean, turn;
 } demi_touching;
 /* A side or corner of a facet within reach of a body. >>touch uses these links to find which facets
    are connected and whether they form a ring around the body. */
@@ -4379,6 +4385,11 @@ typedef struct demi_kept_more {
     dem_real inset;                /* the normal force acts at inset*arm_a */
     dem_vec3 spread;               /* m, from the centre of pressure to this point */
     dem_real couple;               /* m: moment about the normal, over the normal force */
+    /* if a polyhedron touches several walls of one surface in one contact: */
+    dem_real part;                 /* this wall's part of it; 0: all */
+    dem_vec3 lean, turn;           /* 1, m: what the wall's force and moment have beyond that part,
+                                      over the normal force */
+    int32_t rank;                  /* 0: the first wall; others continue what the first does */
 } demi_kept_more;
 /* A persistent contact: any contact except sphere on sphere and, with springs, except those of
    spheres of clusters. (The history of two spheres is in the pruned neighbour list.) It exists as
@@ -4508,7 +4519,8 @@ enum {
     DEMI_ONLY_GAPS = 64            /* its function for polyhedra finds gaps, not pressure */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contact points of a grain with a sieve */
-enum { DEMI_FLATS = 6 };        /* separate contacts that a polyhedron may have with one wall */
+enum { DEMI_FLATS = 6 };        /* contacts that a polyhedron may have with one surface */
+enum { DEMI_FLATS_WALLS = 24 };                 /* parts of these, if it is of several walls */
 enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface of revolution */
 #define DEMI_SHAPES(X) \
     X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
@@ -4563,7 +4575,8 @@ static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was remove
    that is a vector component; traits; functions, see demi_response_row (0: none needed).
    The history with impulses is: friction force and moment (vectors); the normal force and the part
    of it that cohesion takes, N; the normal velocity after the step and the velocity that was
-   reversed, m/s (see demi_impulse_turns); and 1 if the contact slides, else 0. */
+   reversed, m/s (see demi_impulse_turns); 1 if the contact slides, else 0; and the normal for which
+   the force was solved (a vector). */
 enum {
     DEMI_LAWS = 1,                 /* contact laws give the force of each contact */
     DEMI_LASTING = 2,              /* contacts have a duration, which limits the time step */
@@ -4573,11 +4586,11 @@ enum {
                                       speeds */
     DEMI_JOINTED = 32              /* joints and motors act */
 };
-enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
+enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_NORMAL = 11, DEMI_IMPULSE_REALS = 14 };
 #define DEMI_RESPONSES(X) \
     X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
       demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \
-    X("impulses", DEMI_IMPULSE_REALS, 0x3f, DEMI_MIDWAY | DEMI_FORESEEN | DEMI_JOINTED, \
+    X("impulses", DEMI_IMPULSE_REALS, 0x383f, DEMI_MIDWAY | DEMI_FORESEEN | DEMI_JOINTED, \
       demi_impulses_settle, demi_impulses_room, 0, demi_impulses, demi_impulses_due, \
       demi_impulses_info) \
     /* the last */
@@ -9088,6 +9101,22 @@ static int demi_carry_collect(dem_world *w) {
 DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
     return w->kept_now + w->kept_first[d];
 }
+/* True if a contact is a later part of one with several walls: it continues what the first does. */
+DEM_INLINE int demi_kept_later(const demi_kept *c) { return c->odd && c->more.rank > 0; }
+/* Returns the index of the old contact that a later part c continues: of the parts of the one that
+   its first part continues, that with the same wall, else the first. end: of the body's old
+   contacts. */
+static int demi_kept_part(const dem_world *w, int d, const demi_kept *end, const demi_kept *c) {
+    const int from = c[-c->more.rank*c->corners].from;
+    const demi_kept *now = demi_kept_of(w, d), *o = from < 0 ? end : now + from;
+    do o += c->corners;
+    while (o < end && demi_kept_later(o) && o->wall != c->wall);
+    return o < end && demi_kept_later(o) ? (int)(o - now) : from;
+}
+/* The weight of friction of all parts of a contact. */
+DEM_INLINE dem_real demi_kept_whole(const demi_kept *c) {
+    return c->odd && c->more.part > 0 ? c->grip/c->more.part : c->grip;
+}
 /* Marks in met[] which materials have touched. Persistent contacts are marked when they begin.
    Pairs of spheres are examined only before a list is dropped: contacts shorter than the life of a
    list may be missed, lasting ones are always found. */
@@ -12155,8 +12184,12 @@ static void demi_wall_forget(dem_world *w, int wall) {
     int d, k, left;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         demi_kept *c = w->domains[d].kept ? demi_kept_of(w, d) : 0;
-        for (k = left = 0; k < w->domains[d].kept; k++)
+        for (k = left = 0; k < w->domains[d].kept; k++) {
+            const int next = k + 4;             /* the part of the next wall, if there is one */
             if (c[k].b >= 0 || c[k].wall != wall) c[left++] = c[k];
+            else if (next < w->domains[d].kept && demi_kept_later(&c[next]) &&
+                     !demi_kept_later(&c[k])) c[next].more.rank = 0;
+        }
         w->domains[d].kept = left;
     }
 }
@@ -15234,19 +15267,20 @@ static void demi_cross_index(dem_world *w) {
 /* Returns the largest number of contact points of one body with one wall. Its candidates in work
    group d begin at k; *end receives the first of the next body or wall. A polyhedron may have four
    points in each of the ways in which it touches (the two sides of facets, the skirts at open
-   edges), and four more by gaps. */
+   edges), and four more by gaps. A joined surface has them for each of its walls. */
 static int demi_places_of(const dem_world *w, int d, int k, int *end) {
     const int base = d*w->wall_stride, body = w->wall_body[base + k], id = w->wall_id[base + k];
     const demi_wall *wall = demi_surface_of(w, id);
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
     const int sets = wall->kind == DEMI_WALL_SIEVE ? 2 : 1, ways = sets*DEMI_FLATS;    /* wires */
+    const int parts = wall->whose ? DEMI_FLATS_WALLS : ways;
     int n = 0, flats = 0;
     for (; k < w->domains[d].walls && w->wall_body[base + k] == body &&
            w->wall_id[base + k] == id; k++) {
         n += kind->most;
         flats += kind->corners ? 4*ways + 4 : 8*ways;
     }
-    if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 8*ways);
+    if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 4*(ways + parts));
     *end = k;
     return w->bodies.shaped ? DEMI_MAX(n, flats) : n;
 }
@@ -19976,6 +20010,9 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    frame of the wall. Surfaces whose normals differ by more than 18 degrees are separate contacts.
    Each has the overlap of the whole wall, and takes part in its energy in proportion to its force.
    Each consists of four contact points, the corners of the patch that its pressure is spread over.
+   If several walls of a joined surface are under the patch, each wall has these four points, and
+   bears the part of the force that its own pressure has. However a surface is divided into walls,
+   stiffness, damping and friction are thus those of one wall.
 
    A surface acts on one side: that of the facet, or piece, nearest to the body's centre. If it ends
    near the body, it acts on the side beyond which there is less of the body, and curtains extend
@@ -19984,38 +20021,78 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    contact points per direction.
    --------------------------------------------------------------------------------------------- */
 
-/* Pressures on one surface, grouped by the direction of the surface and, if it is joined, by
-   walls. */
+/* What the pressure of one group does to one wall. */
+typedef struct demi_flats_wall {
+    int group, wall;
+    dem_vec3 shift;                            /* m, image of the first element */
+    demi_d3 force, torque;                     /* as in demi_pressure */
+} demi_flats_wall;
+/* Pressures on one surface, grouped by its direction and its walls' materials. */
 typedef struct demi_flats {
-    int count;
-    const int32_t *whose;                      /* as in demi_wall; may be null */
+    const dem_world *w;
+    const demi_wall *wall;                     /* the surface */
+    int count, walls;
     dem_vec3 now;                              /* m, shift of the image that is examined */
     int32_t element[DEMI_FLATS];               /* the first of each group */
     dem_vec3 shift[DEMI_FLATS];                /* m, its image */
     demi_pressure press[DEMI_FLATS];
+    demi_flats_wall part[DEMI_FLATS_WALLS];
 } demi_flats;
 static void demi_flats_begin(demi_flats *f, const demi_view *v) {
-    f->count = 0;
-    f->whose = v->wall->scale ? 0 : v->wall->whose;
+    f->w = v->w;
+    f->wall = v->wall;
+    f->count = f->walls = 0;
 }
-/* Adds the pressure on an element to the group within 18 degrees, or begins a new group. */
-static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
+/* True if two elements are of one wall or of walls that friction cannot tell apart. */
+static int demi_flats_alike(const demi_flats *f, int32_t element, int32_t other) {
+    const demi_wall *a = &f->w->walls[demi_surface_wall(f->w, f->wall, element)];
+    const demi_wall *b = &f->w->walls[demi_surface_wall(f->w, f->wall, other)];
+    const dem_vec3 glide = demi_rotate(b->pose.rotation, b->glide);
+    return a == b || (a->material == b->material && a->glides == b->glides &&
+        (!a->glides || !(demi_length(demi_sub(demi_rotate(a->pose.rotation, a->glide), glide)) >
+                         DEM_R(1e-6)*demi_length(glide))));
+}
+/* Notes a force and torque of a group on a wall; if there is no room, on another of its walls. */
+static void demi_flats_on(demi_flats *f, int group, int wall, demi_d3 force, demi_d3 torque) {
+    demi_flats_wall *p = 0;
+    int i;
+    for (i = 0; i < f->walls && !(p && p->wall == wall); i++)
+        if (f->part[i].group == group) p = &f->part[i];
+    if (!(p && p->wall == wall) && f->walls < DEMI_FLATS_WALLS) {
+        p = &f->part[f->walls++];
+        memset(p, 0, sizeof *p);
+        p->group = group;
+        p->wall = wall;
+        p->shift = f->now;
+    }
+    if (!p) return;
+    p->force = demi_d3_add(p->force, force);
+    p->torque = demi_d3_add(p->torque, torque);
+}
+/* Adds the pressure on an element to the group within 18 degrees, or begins a new group. Returns
+   its index, or -1 if there is no pressure. */
+static int demi_flats_join(demi_flats *f, int32_t element, const demi_pressure *s) {
     const double size = demi_d3_length(s->force);
     double most = -2;
     int i, best = 0;
-    if (!(s->sum > 0) || !(size > 0)) return;
+    if (!(s->sum > 0) || !(size > 0)) return -1;
     for (i = 0; i < f->count; i++) {
         const demi_d3 F = f->press[i].force;
         const double along = demi_d3_dot(F, s->force)/(size*demi_d3_length(F));
-        if (f->whose && f->whose[f->element[i]] != f->whose[element] && f->count < DEMI_FLATS)
-            continue;
+        if (f->count < DEMI_FLATS && !demi_flats_alike(f, f->element[i], element)) continue;
         if (along > most) { most = along; best = i; }
     }
     if (most < 0.95 && f->count < DEMI_FLATS) {
         f->shift[f->count] = f->now;
         f->element[f->count] = element;
-        f->press[f->count++] = *s;
+        f->press[best = f->count++] = *s;
     } else demi_pressure_add(&f->press[best], s);
+    return best;
+}
+static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
+    const int group = demi_flats_join(f, element, s);
+    if (group >= 0)
+        demi_flats_on(f, group, demi_surface_wall(f->w, f->wall, element), s->force, s->torque);
 }
 /* Energy I of all groups, m3; < 0: the body's centre is beyond the surface. */
 static double demi_flats_energy(const demi_flats *f) {
@@ -20033,7 +20110,7 @@ static double demi_flats_energy(const demi_flats *f) {
 static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
     const double a = demi_flats_energy(seen), b = demi_flats_energy(seen + 1), all = a + b;
     double share[2];
-    int i, k;
+    int i, k, e, group;
     share[1] = a < 0 || b < 0 ? a < 0 : 3*b < a;
     share[0] = 1 - share[1];
     /* the centre is beyond: one side has at least what is left on the other */
@@ -20049,8 +20126,35 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
             demi_pressure_scale(&press, share[k]);
             if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: stop */
             out->now = seen[k].shift[i];
-            demi_flats_add(out, seen[k].element[i], &press);
+            group = demi_flats_join(out, seen[k].element[i], &press);
+            for (e = 0; e < seen[k].walls && group >= 0; e++) {
+                const demi_flats_wall *p = seen[k].part + e;
+                out->now = p->shift;
+                if (p->group == i)
+                    demi_flats_on(out, group, p->wall, demi_d3_scale(p->force, share[k]),
+                                  demi_d3_scale(p->torque, share[k]));
+            }
         }
+}
+/* Makes the four contact points t those of one wall's part of its group, of patch p. weight: sum of
+   the forces of the group's walls. */
+static void demi_flats_divide(const demi_flats_wall *part, const demi_patch *p, double weight,
+                              const dem_real *R, int rank, demi_touching *t) {
+    const double phi = demi_d3_length(part->force)/weight, unit = 1/(phi*p->force);
+    const demi_d3 n = demi_d3_of(p->normal), at = demi_d3_of(p->point);
+    const demi_d3 lean = demi_d3_sub(demi_d3_scale(part->force, unit), n);
+    const demi_d3 own = demi_d3_sub(part->torque, demi_d3_cross(at, part->force));
+    const demi_d3 turn = demi_d3_plus(demi_d3_scale(own, unit), -(double)p->couple, n);
+    int k;
+    for (k = 0; k < 4; k++) {
+        t[k].wall = part->wall;
+        t[k].rank = rank;
+        t[k].part = (dem_real)phi;
+        t[k].share *= (dem_real)phi;
+        t[k].shift = part->shift;
+        t[k].lean = demi_rotate(R, demi_d3_real(lean));
+        t[k].turn = demi_rotate(R, demi_d3_real(turn));
+    }
 }
 /* Writes the contact points of all groups, found in a frame of axes R. Returns their number. */
 static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
@@ -20059,13 +20163,16 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     const demi_part local = demi_part_local(R, part);
     double shared = 0, force = 0, overlap;
     demi_patch p;
-    int i, k, count = 0;
+    int i, k, e, count = 0;
     for (i = 0; i < f->count; i++) {
         shared += f->press[i].shared;
         force += demi_d3_length(f->press[i].force);
     }
     overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
     for (i = 0; i < f->count && overlap > 0; i++) {
+        const demi_flats_wall *part = f->part, *first = 0;
+        double weight = 0;
+        int rank = 0;
         if (!demi_pressure_patch(&f->press[i], &local.q, 0, &p)) continue;
         for (k = 0; k < 4; k++) {
             demi_touching *t = &out[count++];
@@ -20081,7 +20188,18 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
             t->spread = demi_rotate(R, demi_patch_spread(&p, k));
             t->point = demi_add(demi_add(v->at, demi_rotate(R, p.point)), t->spread);
             t->shift = f->shift[i];
+            t->part = 0;
         }
+        for (e = 0; e < f->walls; e++)
+            if (part[e].group == i) weight += demi_d3_length(part[e].force);
+        for (e = 0; e < f->walls; e++) {
+            if (part[e].group != i || !(demi_d3_length(part[e].force) > 0)) continue;
+            if (!first) { first = &part[e]; continue; }
+            memcpy(&out[count], &out[count - 4*(++rank)], 4*sizeof *out);
+            demi_flats_divide(&part[e], &p, weight, R, rank, &out[count]);
+            count += 4;
+        }
+        if (rank) demi_flats_divide(first, &p, weight, R, 0, &out[count - 4*(rank + 1)]);
     }
     return count;
 }
@@ -20555,8 +20673,7 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
         t->image = sheets->image[i];
         for (k = 0; k < 2; k++) {
             t->way = k ? -sheets->way[i] : sheets->way[i];
-            seen[k].count = 0;
-            seen[k].whose = flats->whose;
+            demi_flats_begin(&seen[k], t->start);
             if (!k || seen[0].count) demi_sheet_seen(t, s, &seen[k]);
         }
         demi_flats_sides(seen, flats);
@@ -20592,7 +20709,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
         if (demi_tessellation_beyond(start->w, wall, v.x, &n)) {
             memset(&press, 0, sizeof press);
             demi_pressure_beyond(&s, demi_d3_of(n), &press);
-            flats.count = 0;
+            flats.count = flats.walls = 0;
             flats.now = v.shift;
             demi_flats_add(&flats, v.element[0], &press);
             return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
@@ -21974,6 +22091,13 @@ static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, c
     c->corners = place->corners;
     demi_kept_odd(c)->couple = place->couple;
     c->more.spread = place->spread;
+    if (place->part > 0) {
+        c->wall = place->wall;
+        c->more.part = place->part;
+        c->more.rank = place->rank;
+        c->more.lean = place->lean;
+        c->more.turn = place->turn;
+    }
     c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
     c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
 }
@@ -22137,7 +22261,7 @@ static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int o
             o->part_a != c->part_a || o->part_b != c->part_b ||
             (how != DEMI_FIT_SLID && !demi_kept_one(w, o, c)) ||
             (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
-            (o->element != c->element && how == DEMI_FIT_TURNED)) continue;
+            (o->element != c->element && how == DEMI_FIT_TURNED) || demi_kept_later(o)) continue;
         if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
         if (how == DEMI_FIT_NEAREST) {
             const dem_vec3 way = demi_sub(o->arm_a, c->arm_a);
@@ -22300,16 +22424,20 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
 
 /* Sets `held` of n contacts of one body with one partner or wall: the grip (weight of friction)
    that each inherits from the step before. Contacts that continue the same old one divide its grip
-   in proportion to their own. now: the old list of the work group. */
+   in proportion to their own. Of a contact in parts all have that of all its parts. now: the old
+   list of the work group. */
 static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
     int i, k;
     if (n == 1) { c->held = -1; return; }       /* do not load the old one yet */
     for (k = 0; k < n; k++) {
+        const dem_real own = demi_kept_whole(&c[k]);
         dem_real all = 0;
         if (c[k].from < 0) continue;
-        for (i = 0; i < n; i++) if (c[i].from == c[k].from) all += c[i].grip;
-        c[k].held = now[c[k].from].grip;
-        if (all > c[k].grip) c[k].held *= c[k].grip/all;
+        if (demi_kept_later(&c[k])) { c[k].held = c[k - c[k].corners].held; continue; }
+        for (i = 0; i < n; i++)
+            if (c[i].from == c[k].from && !demi_kept_later(&c[i])) all += demi_kept_whole(&c[i]);
+        c[k].held = demi_kept_whole(&now[c[k].from]);
+        if (all > own) c[k].held *= own/all;
     }
 }
 /* Splits contact c of two polyhedra into the four corners of the parallelogram over which its
@@ -22609,7 +22737,8 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
                              demi_response_is(w, DEMI_PRESSING) ? DEMI_FIT_TURNED
                                                                 : DEMI_FIT_NEAREST);
     for (i = 0, c = fresh; i < count; i++, c++) {
-        if (c->from < 0 && olds)
+        if (demi_kept_later(c)) c->from = demi_kept_part(w, d, &old[olds], c);
+        else if (c->from < 0 && olds)
             c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(w, old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
@@ -22703,11 +22832,11 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
             : demi_surface_of(w, demi_kept_surface(w, &old[e]));
         dem_real nearest = DEM_R(0.95);
         demi_kept *heir = 0;
-        if (!wall || !(old[e].grip > 0) ||
+        if (!wall || !(old[e].grip > 0) || demi_kept_later(&old[e]) ||
             !(demi_faceted(wall) || demi_wall_is(wall, DEMI_CROSSED))) continue;
         for (i = 0; i < n && c[i].from != first + e; i++) {
             const dem_real along = demi_dot(old[e].normal, c[i].normal);
-            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 ||
+            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 || demi_kept_later(&c[i]) ||
                 c[i].corner != old[e].corner ||
                 !(2*old[e].overlap > c[i].overlap) || !demi_kept_beside(w, &old[e], &c[i]))
                 continue;
@@ -22716,6 +22845,7 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
         }
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
+    for (i = 0; i < n; i++) if (demi_kept_later(&c[i])) c[i].send = c[i - c[i].corners].send;
 }
 /* True if the point of c on its wall lies on another surface too. first, last: the candidates of
    the body in work group d. Planes, cylinders and surfaces of facets can cover others. */
@@ -22970,9 +23100,9 @@ DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c
    did. */
 static const dem_real *demi_kept_past(const dem_world *w, const demi_kept *now, demi_kept *c) {
     const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
-    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? now[c->from].grip : c->held;
-    const dem_real more = ended ? ended->grip : 0, all = held + more;
-    const dem_real left = c->grip > all ? all/c->grip : 1;
+    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? demi_kept_whole(&now[c->from]) : c->held;
+    const dem_real more = ended ? demi_kept_whole(ended) : 0, all = held + more;
+    const dem_real grip = demi_kept_whole(c), left = grip > all ? all/grip : 1;
     int k;
     if (c->from >= 0 && (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)))
         return now[c->from].memory;
@@ -23410,10 +23540,21 @@ static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
                  demi_sub(demi_row(t->rows.torque[1], q),
                           demi_add(demi_cross(c->arm_b, aside), moment)));
 }
+/* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
+   while a has its part of all (demi_kept_more). Over all parts, the two are the same. */
+DEM_INLINE dem_vec3 demi_kept_own(demi_kept_tile *t, int q, dem_vec3 *moment) {
+    const demi_kept *c = t->contact[q];
+    const dem_real press = t->share[q]*t->rows.repulsion[q];
+    *moment = demi_row(t->rows.moment, q);
+    if (!c->odd || !(c->more.part > 0)) return demi_row(t->rows.force, q);
+    *moment = demi_sub(*moment, demi_scale(c->more.turn, press));
+    return demi_sub(demi_row(t->rows.force, q), demi_scale(c->more.lean, press));
+}
 /* Adds the force of row q to both bodies, or to body a and the sums of its wall. */
 static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
-    const demi_kept *c = t->contact[q];
+    demi_kept *c = t->contact[q];
     const dem_vec3 force = demi_row(t->rows.force, q);
+    c->force = force;
     demi_force_add(w->bodies.force + 4*c->a, force);
     demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
     if (c->b >= 0) {                            /* several contacts may share a slot */
@@ -23423,8 +23564,9 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
     } else {
         const demi_wall *wall = &w->walls[c->wall];
         demi_wall_sum *sum = &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall];
-        demi_wall_sum_add(w, sum, c->wall, t->at[q], force, demi_row(t->rows.moment, q),
-                          t->surface[q]);
+        dem_vec3 moment;
+        c->force = demi_kept_own(t, q, &moment);
+        demi_wall_sum_add(w, sum, c->wall, t->at[q], c->force, moment, t->surface[q]);
         if (wall->glides)                       /* only friction does work on a gliding surface */
             sum->power += (double)(t->grip[q]*demi_dot(demi_row(t->rows.tangent, q),
                 demi_glide_at(wall, &wall->pose, c->normal)));
@@ -23466,7 +23608,6 @@ static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_
         demi_kept *c = t->contact[q];
         for (e = 0; e < r->keep; e++) c->memory[e] = rows->memory[e][q];
         if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        c->force = demi_row(rows->force, q);
         demi_kept_push(w, d, t, q);
         if (w->cell.on && c->b >= 0)
             demi_tile_cell(w, rows, q, demi_sub(c->arm_a, c->arm_b), c->slope*c->lift,
@@ -24251,6 +24392,7 @@ typedef struct demi_knot {
                                       body */
     double work, bank, kinetic;    /* J: work of its joints; energy that they have absorbed; kinetic
                                       energy of its bodies */
+    double wide, pull, kept;
     double x[6];                   /* right-hand side, then solution */
     dem_quat turned;               /* of a body: orientation a step ahead, see demi_knots_ahead */
     /* used by demi_knots_order: neighbours; queue of nodes with a degree of this index; number of
@@ -24267,6 +24409,7 @@ typedef struct demi_link_of { int32_t to, next; } demi_link_of;
 #define DEMI_GIVE_LOOPS DEM_R(1e-6)
 #define DEMI_JOINED (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-8))
 #define DEMI_BANKED 1e-3
+#define DEMI_SMOOTH 1e-4
 /* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
    they do not touch each other. */
 static int demi_joined(const dem_world *w, int a, int b, int wall) {
@@ -24977,10 +25120,12 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
         o.point = j->arm[end];
         o.axis = j->axis[end];
         if (j->desc.wall.id) {
-            const dem_pose *pose = &w->walls[demi_wall_place(j->desc.wall)].pose;
-            const dem_quat q = demi_quat_exp(demi_scale(pose->spin, by));
+            const demi_wall *wall = &w->walls[demi_wall_place(j->desc.wall)];
+            const dem_pose *pose = &wall->pose;
+            const dem_quat q = demi_quat_exp(demi_scale(wall->ahead.spin, by));
             o.point = dem_quat_rotate(q, demi_rotate(pose->rotation, o.point));
-            o.point = demi_add(demi_add(pose->position, o.point), demi_scale(pose->velocity, by));
+            o.point = demi_add(demi_add(pose->position, o.point),
+                               demi_scale(wall->ahead.velocity, by));
             o.axis = dem_quat_rotate(q, demi_rotate(pose->rotation, o.axis));
         }
     }
@@ -25267,13 +25412,20 @@ static void demi_joints_lay(dem_world *w) {
             demi_joint *j = w->joints + s->knots[i].rod;
             const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
             const dem_real gap = j->state.gap + j->state.tilt*size;
+            const demi_rod *r = s->rods + s->knots[i].rod;
+            const dem_real pull = demi_length(demi_at(r->given))*
+                (s->movers[r->a].inv + s->movers[r->b].inv)*s->dt;
             group->bank += j->bank;
+            group->wide = DEMI_MAX(group->wide, (double)gap);
+            group->pull = DEMI_MAX(group->pull, (double)pull);
             j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
             group->open |= (gap > 100*DEMI_JOINED*size) | (j->apart > few)*2;
         } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
             demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
             (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
     }
+    for (i = 0; i < s->knot_count; i++)
+        s->knots[i].guarded = s->knots[i].wide > DEMI_SMOOTH*s->knots[i].pull;
     s->factored = 0;
 }
 /* Warm start: applies the impulses of the last step, and those of motors with a given torque. */
@@ -25308,10 +25460,60 @@ static void demi_knots_ahead(dem_world *w) {
         s->knots[i].turned = q;
     }
 }
+/* Returns the angular acceleration of a body that rotates with the spin without torque, rad/s2. */
+static dem_vec3 demi_knot_tumbles(const dem_world *w, int body, dem_vec3 spin) {
+    const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
+    const dem_vec3 I = demi_moments_of(w, body), x = dem_quat_unrotate(q, spin);
+    const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
+    if (!demi_shape_of(w, body)) return demi_v(0, 0, 0);
+    return demi_mover_turn(&w->solver, body, demi_cross(L, spin), 1);
+}
+/* Returns the acceleration of the point that a joint holds on a wall, m/s2. */
+static dem_vec3 demi_rod_driven(const dem_world *w, int joint) {
+    const demi_joint *j = &w->joints[joint];
+    const demi_wall *wall = j->desc.wall.id ? &w->walls[demi_wall_place(j->desc.wall)] : 0;
+    const dem_pose *was, *next;
+    if (!wall || wall->motion.kind == DEM_MOTION_FIXED) return demi_v(0, 0, 0);
+    was = &wall->was;
+    next = &wall->ahead;
+    return demi_scale(demi_sub(
+        demi_surface_at(next, demi_add(next->position, demi_rotate(next->rotation, j->arm[1]))),
+        demi_surface_at(was, demi_add(was->position, demi_rotate(was->rotation, j->arm[1])))),
+        1/w->solver.dt);
+}
+/* Computes the acceleration of a relative to b in the first five rows if no force acted, m/s2 and
+   rad/s2: the mean of those with the velocities before and after the step. */
+static void demi_rod_bends(const dem_world *w, int joint, dem_real *bend) {
+    const demi_rod *r = w->solver.rods + joint;
+    const dem_vec3 x = r->along[2];
+    dem_vec3 point = demi_v(0, 0, 0), axis = point;
+    int e, after, k;
+    for (after = 0; after < 2; after++) {
+        dem_vec3 rate[2] = {{0, 0, 0}, {0, 0, 0}};
+        for (e = 0; e < 2; e++) {
+            const int body = e ? r->b : r->a;
+            const dem_real half = e ? DEM_R(-0.5) : DEM_R(0.5);
+            dem_vec3 spin = demi_at(w->solver.movers[body].w), tumbles = demi_v(0, 0, 0);
+            if (body < w->bodies.count) {
+                if (!after) spin = demi_at(w->bodies.spin + 4*body);
+                tumbles = demi_knot_tumbles(w, body, spin);
+                point = demi_add(point, demi_scale(demi_add(demi_cross(tumbles, r->arm[e]),
+                    demi_cross(spin, demi_cross(spin, r->arm[e]))), half));
+            } else point = demi_add(point, demi_scale(demi_rod_driven(w, joint), half));
+            rate[e] = demi_cross(spin, x);
+            axis = demi_add(axis, demi_scale(demi_cross(x, demi_add(demi_cross(tumbles, x),
+                                                        demi_cross(spin, rate[e]))), half));
+        }
+        axis = demi_add(axis, demi_cross(rate[1], rate[0]));
+    }
+    demi_put(bend, point);
+    for (k = 3; k < 5; k++) bend[k] = demi_dot(axis, r->along[k - 3]);
+}
 /* Computes the residual velocities of a joint's rows, m/s and rad/s. Their target is that its
-   points and axes coincide at the next detection. In a guarded group the target is the opposite of
-   the velocity before the step (half of it at level 1), unless `shifts` is 1, which asks for the
-   gaps to be closed by displacements. Returns the squared sum, (m/s)^2. */
+   points and axes coincide at the next detection. In a guarded group it is the change of velocity
+   in half a step in which the gap grows evenly (level 1), or the opposite of the velocity before
+   the step (level 2), unless `shifts` is 1, which asks for the gaps to be closed by displacements.
+   Returns the squared sum, (m/s)^2. */
 static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *lacks) {
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + i;
@@ -25322,8 +25524,13 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
     if (!r->rows) return 0;
     demi_rod_velocity(s, r, u);
     if (s->knots[s->knots[r->knot].group].guarded && !shifts) {
-        const dem_real back = s->knots[s->knots[r->knot].group].guarded > 1 ? 1 : DEM_R(0.5);
-        for (k = 0; k < 5; k++) lacks[k] = -back*r->before[k] - u[k];
+        dem_real bend[6];
+        if (s->knots[s->knots[r->knot].group].guarded > 1)
+            for (k = 0; k < 5; k++) lacks[k] = -r->before[k] - u[k];
+        else {
+            demi_rod_bends(w, i, bend);
+            for (k = 0; k < 5; k++) lacks[k] = -bend[k]*s->dt/2 - u[k];
+        }
     } else {
         const demi_periods p = demi_periods_of(w);
         const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
@@ -25456,7 +25663,16 @@ static double demi_joints_shift(dem_world *w) {
     for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
     if (!any) return 0;
     demi_joints_solve(w, 1);
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < s->knot_count; i++) s->knots[i].work = s->knots[i].kept = 0;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        dem_real u[6];
+        int e;
+        if (!r->rows) continue;
+        demi_rod_velocity(s, r, u);
+        for (e = 0; e < 5; e++)
+            s->knots[demi_knot_group(s, r->knot)].kept += fabs((double)(r->given[e]*u[e]));
+    }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i;
         const double fall = demi_d3_dot(demi_d3_of(w->desc.gravity), demi_d3_at(k->x));
@@ -25465,8 +25681,9 @@ static double demi_joints_shift(dem_world *w) {
     }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i, *group = s->knots + k->group;
-        const double paid = group->open > 1 || !(group->work > group->bank) ? 1
-            : DEMI_MAX(group->bank, 0)/group->work;
+        const double spare = DEMI_MAX(0, group->bank -
+                                      DEMI_MIN(group->kept, DEMI_BANKED/2*group->kinetic));
+        const double paid = group->open > 1 || !(group->work > spare) ? 1 : spare/group->work;
         const dem_real by = (dem_real)paid*s->dt;
         const dem_vec3 way = demi_scale(demi_d3_real(demi_d3_at(k->x)), by);
         const dem_vec3 turn = demi_scale(demi_d3_real(demi_d3_at(k->x + 3)), by);
@@ -25475,7 +25692,7 @@ static double demi_joints_shift(dem_world *w) {
         if (!group->guarded || !group->open) continue;
         if (k->mover < 0) {
             if (group->work > 0 && group->bank > 0)
-                w->joints[k->rod].bank *= 1 - DEMI_MIN(1, group->work/group->bank);
+                w->joints[k->rod].bank *= 1 - DEMI_MIN(1, paid*group->work/group->bank);
             continue;
         }
         o = w->bodies.last_orient + 4*k->mover;  /* where demi_ahead_back puts it */
@@ -26159,9 +26376,15 @@ static void demi_impulses_lift(dem_world *w, int index) {
         if (lb) demi_put(lb, demi_add(b, demi_scale(n, by*ib)));
     }
 }
+/* True if no contact and no joint acts on body i. */
+static int demi_mover_free(const dem_world *w, int i) {
+    return !w->solver.colours[i] && !(w->joint_count && w->solver.joined[i] >= 0);
+}
 /* Sets forces and torques of a domain's bodies to those that produce the solved velocities in the
    coming step. Gravity is not part of them. Before, they are those of force fields, whose work, as
-   that of impulses, is exact with the mean of the velocities before and after the step. */
+   that of impulses, is exact with the mean of the velocities before and after the step. The torque
+   on a free body stays that of the fields, without round-off, so that the isolated bodies of >>near
+   have a torque of exactly 0. */
 static void demi_movers_force(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
@@ -26182,6 +26405,7 @@ static void demi_movers_force(dem_world *w, int d) {
             const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
             const dem_vec3 local = dem_quat_unrotate(q, demi_at(m->w));
             const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*local.x, I.y*local.y, I.z*local.z));
+            if (demi_mover_free(w, i)) continue;
             demi_put(torque, demi_scale(demi_sub(L, demi_at(w->bodies.angular + 4*i)), per));
         } else
             for (k = 0; k < 3; k++)
@@ -26236,7 +26460,8 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
             moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per,
             demi_dot(after, c->normal), s->beside[m->at].turns,
-            demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride])};
+            demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride]),
+            c->normal.x, c->normal.y, c->normal.z};
         for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
         part[0] = -(double)demi_dot(demi_sub(p, c->slip), u);
         part[1] = -(double)demi_dot(c->slip, u);
@@ -26471,19 +26696,21 @@ static void demi_due_book(dem_world *w) {
     w->booked.throughput += fabs(w->booked.due[3]) + fabs(w->booked.due[4]);
 }
 /* Returns 1 if entry p of domain d's pruned neighbour list has an impulse or overlaps, and fills
-   *out and *gap unless out is null: see demi_response_row. */
+   *out and *gap unless out is null: see demi_response_row. The normal of a constraint is that of
+   its detection, half a step ahead of the present positions, because its force acts along it. */
 static int demi_impulses_info(const dem_world *w, int d, int p, dem_contact_info *out,
                               dem_vec3 *gap) {
     const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)p;
     const dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
     const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
-    const dem_vec3 way = demi_near_way(w, at);
+    const dem_real *n = memory + DEMI_IMPULSE_NORMAL*stride;
+    const dem_vec3 way = demi_near_way(w, at), normal = demi_v(n[0], n[stride], n[2*stride]);
     const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
     if (!(memory[6*stride] > 0) && !(memory[7*stride] > 0) && !(overlap > 0)) return 0;
     if (!out) return 1;
-    out->normal = demi_scale(way, 1/l);
+    out->normal = demi_dot(normal, normal) > 0 ? normal : demi_scale(way, 1/l);
     out->overlap = overlap;
-    *gap = way;
+    *gap = demi_scale(out->normal, l);
     out->force = demi_sub(demi_v(-memory[0], -memory[stride], -memory[2*stride]),
                           demi_scale(out->normal, memory[6*stride] - memory[7*stride]));
     return 1;
@@ -29144,7 +29371,8 @@ static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, 
         demi_kept *c = t->contact[q];
         dem_vec3 force, torque;
         if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        c->force = force = demi_row(t->rows.force, q);
+        c->force = demi_kept_own(t, q, &torque);
+        force = demi_row(t->rows.force, q);
         torque = demi_row(t->rows.torque[0], q);
         if (w->desc.planar) force.z = torque.x = torque.y = 0;
         demi_force_add(w->bodies.force + 4*c->a, demi_scale(force, sign));
@@ -30012,20 +30240,30 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     out->wall = out->further = 0;
     out->point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a),
         demi_near_arm(w, at, 0)), demi_scale(gap, ra/(ra + rb))));
-    if (branch) *branch = demi_near_bodies_way(w, at);
+    if (branch) *branch = demi_response_is(w, DEMI_LAWS) ? demi_near_bodies_way(w, at) : gap;
     return 1;
 }
+/* Returns the vector from the centre of a to the point at which a wall acts on it, m. It is on the
+   surface of the wall, whereas the arm leads to that of a, which overlaps. The arm of polyhedra
+   leads to the wall if they press on it, otherwise half way across the gap. At both points the
+   normal force has the same moment; that of impulses acts at the arm. */
+static dem_vec3 demi_wall_branch(const dem_world *w, const demi_kept *c) {
+    const int pressing = demi_response_is(w, DEMI_PRESSING);
+    const dem_real inset = pressing && c->odd ? c->more.inset : 1;
+    dem_real past = c->overlap/c->slope - (1 - inset)*demi_dot(c->arm_a, c->normal);
+    if (c->corners) past = pressing && c->overlap > 0 ? 0 : c->overlap/2;
+    return demi_sub(demi_scale(c->arm_a, inset), demi_scale(c->normal, past));
+}
 /* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
-   users see. */
-static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
+   users see. branch: m, from the centre of a to the contact point. */
+static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_vec3 branch,
+                           dem_contact_info *out) {
     const demi_periods p = demi_periods_of(w);
-    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
     out->a = dem_body_id_get(w, c->a);
     out->b = dem_body_id_get(w, c->b);
     out->wall = c->b < 0 ? w->walls[c->wall].id : 0;
     out->normal = c->normal;
-    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
-    out->point = demi_place_of(&p, x);
+    out->point = demi_place_of(&p, demi_add(demi_at(w->bodies.pos + 4*c->a), branch));
     out->overlap = c->overlap;
     out->force = c->force;
     out->further = c->corner > 0;
@@ -30067,8 +30305,9 @@ static int demi_walk_look(const dem_world *w, demi_walk *c, int at) {
     if (w->joint_count && demi_parted(w, c->a, c->b, c->own ? c->own->wall : -1)) return 0;
     if (c->blind) return 1;
     if (c->own) {
-        demi_kept_info(w, c->own, &c->info);
-        c->branch = c->b < 0 ? c->own->arm_a : demi_sub(c->own->arm_a, c->own->arm_b);
+        c->branch = c->b < 0 ? demi_wall_branch(w, c->own) : c->own->arm_a;
+        demi_kept_info(w, c->own, c->branch, &c->info);
+        if (c->b >= 0) c->branch = demi_sub(c->branch, c->own->arm_b);
     }
     if (!c->info.further) c->counted = 0;
     c->counts = !c->counted && (!solved ? c->info.overlap > 0 : c->own ? c->own->memory[6] > 0
@@ -36821,7 +37060,7 @@ DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, 
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 24 };
+enum { DEMI_CHECKPOINT_VERSION = 25 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -37163,7 +37402,10 @@ static void demi_visit_events(dem_world *w, demi_stream *s) {
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     int d;
     demi_visit_numbers(w, s);
-    for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;      /* see demi_kept_tidy */
+    for (d = 0; d < w->domain_count; d++) {
+        w->domains[d].coefs = 0;                /* see demi_kept_tidy */
+        w->domains[d].check = 0;                /* of the last step, which it has passed */
+    }
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
     demi_visit_joints(w, s);
@@ -38039,8 +38281,10 @@ static int demi_twin_follow(dem_world *t) {
             const int a = t->near.a[first + k], b = t->near.b[first + k];
             t->near.image[first + k] = demi_pair_image(t, &p, a, b);
             if (t->effects.clustered) t->near.on[first + k] = 1;
-            run = k && t->near.k[first + k] == t->near.k[first + k - 1] ? run + 1 : 1;
-            t->domains[d].merging = DEMI_MAX(t->domains[d].merging, run);
+            run = k && k != o->near_cross && t->near.k[first + k] == t->near.k[first + k - 1]
+                ? run + 1 : 1;
+            if (t->effects.clustered)
+                t->domains[d].merging = DEMI_MAX(t->domains[d].merging, run);
             if (!t->effects.uniform && !(t->stage.pairs_changed && demi_many_species(t)))
                 demi_near_coefs(t, &t->near, d, k);
         }

@@ -3210,7 +3210,7 @@ class ContactInfo(Struct):
         ('a', Body, 'b is null for a contact with a wall'),
         ('b', Body, ""),
         ('wall', ctypes.c_int32, 'dem_wall id; 0: b is a body'),
-        ('point', Vec3, 'm; unit, from a to b'),
+        ('point', Vec3, 'm, on the surface of a wall; unit, from a to b'),
         ('normal', Vec3, ""),
         ('overlap', Real, 'm; < 0: a gap within the range of the law'),
         ('force', Vec3, 'N, on a'),
@@ -3359,9 +3359,11 @@ class Stress(Struct):
         ('volume', ctypes.c_double, 'm3, of the domain; fraction that bodies fill'),
         ('solid', ctypes.c_double, ""),
         ('contact', ctypes.c_double*6,
-         'Pa, pressure positive: of contacts, the sum of force x branch over the volume, where a contact with '
-         'a wall acts from the centre to the contact; of motion, the sum of m v v over the volume, about the '
-         'mean velocity; both together'),
+         'Pa, pressure positive: of contacts, the sum of force x branch over the volume; of motion, the sum of'
+         ' m v v over the volume, about the mean velocity; both together. The branch of a contact with a wall '
+         'ends on the surface of the wall. At rest without weight, stress x volume is therefore the sum of '
+         'force x position over the contact points on all walls: between two planes their force x distance, at'
+         ' curved walls that sum over the curved surface.'),
         ('kinetic', ctypes.c_double*6, ""),
         ('total', ctypes.c_double*6, ""),
         ('fabric', ctypes.c_double*6, 'mean of n n over the contacts of two bodies; its trace is 1'),
@@ -3421,8 +3423,8 @@ class FieldData(Struct):
          'null unless desc.stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over'
          ' the volume of the cell stress: cells x 6, Pa, pressure positive: sum over contacts of force x '
          'branch over the volume of the cell. A contact of two grains acts along the line between their '
-         'centres, and each grain accounts for its half; one with a wall acts from the centre to the contact. '
-         'contacts: cells: sum of the number of contacts of the grains'),
+         "centres, and each grain accounts for its half; one with a wall acts from the centre to the wall's "
+         'surface. contacts: cells: sum of the number of contacts of the grains'),
         ('stress', View(ctypes.c_double, 'cells', 6, const=True), ""),
         ('contacts', View(ctypes.c_double, 'cells', const=True), ""),
     ]
@@ -3858,7 +3860,7 @@ def _wrap_dem_contact_fn(function, context, struct):
 
 
 ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ctypes.POINTER(Real), ctypes.c_void_p)
-ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all; impulses: 11); vectors as seen from a. Values that the function writes there count from the next step on.'
+ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all; impulses: 14); vectors as seen from a. Values that the function writes there count from the next step on.'
 
 
 structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Group, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, ContactRows, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, Selection, BodiesMeans, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, RailDesc, RailState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, CellDesc, CellState, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Event, EventsDesc, Impacts, Wear, Servo, Stress, FieldDesc, FieldData, FieldCell, BodyMeans, MixingDesc, Mixing, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
@@ -4760,9 +4762,10 @@ class World(WorldBase):
         """Writes the contacts, those with walls included, at most `capacity` of them, and returns their number. `out` or
         null. The contact history does not change. A contact of two polyhedra, or of one with a wall, is written as up
         to four (dem_shape_polyhedron_add). Contacts of two spheres are those of the present state; all others, and
-        with impulses all, are as the last computation of forces has left them. After bodies, walls or materials have
-        changed, call dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the list. Returns
-        -1 if there is no list: before the first step, and after bodies or walls have changed.
+        with impulses all, are as the last computation of forces has left them. With impulses these forces, gravity
+        and force fields together give the change of the velocities in the coming step. After bodies, walls or
+        materials have changed, call dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the
+        list. Returns -1 if there is no list: before the first step, and after bodies or walls have changed.
         """
         capacity = self._number(_lib.dem_contacts_get(self._at, None, 0))
         out = (ContactInfo*max(capacity, 1))()
