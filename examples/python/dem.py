@@ -1735,8 +1735,8 @@ class Body(Id):
         axes: 0 to 63: sum of DEM_RAIL_ constants; 0 means no rail
         velocity: m/s, along locked axes
         spin: rad/s, about locked axes
-        wall: The body also has the velocity and spin of this wall along and about locked axes, as if it were part of
-            it, so any motion of a wall is a path for a body. Null means none; also if the wall is removed.
+        wall: Along and about locked axes the body also follows the pose of this wall, as if it were part of it, so
+            any motion of a wall is a path for a body. Null means none, as after the removal of the wall.
         """
         desc = RailDesc(axes=axes, velocity=velocity, spin=spin, wall=wall)
         self.world._ok(_lib.dem_body_rail_set(self.world._at, self, desc))
@@ -2750,8 +2750,8 @@ class RailDesc(Struct):
         ('velocity', Vec3, 'm/s, along locked axes'),
         ('spin', Vec3, 'rad/s, about locked axes'),
         ('wall', Wall,
-         'The body also has the velocity and spin of this wall along and about locked axes, as if it were part'
-         ' of it, so any motion of a wall is a path for a body. Null means none; also if the wall is removed.'),
+         'Along and about locked axes the body also follows the pose of this wall, as if it were part of it, '
+         'so any motion of a wall is a path for a body. Null means none, as after the removal of the wall.'),
     ]
 
 

@@ -291,9 +291,9 @@ typedef struct dem_rail_desc {
     int axes;                      /* 0 to 63: sum of DEM_RAIL_ constants; 0 means no rail */
     dem_vec3 velocity;             /* m/s, along locked axes */
     dem_vec3 spin;                 /* rad/s, about locked axes */
-    /* The body also has the velocity and spin of this wall along and about locked axes, as if it
-       were part of it, so any motion of a wall is a path for a body. Null means none;
-       also if the wall is removed. */
+    /* Along and about locked axes the body also follows the pose of this wall, as if it were part
+       of it, so any motion of a wall is a path for a body. Null means none, as after the removal of
+       the wall. */
     dem_wall wall;
 } dem_rail_desc;
 static const dem_rail_desc DEM_RAIL_DESC_ZERO = DEM_ZERO;

@@ -514,10 +514,10 @@ typedef struct demi_joint {
 typedef struct demi_rail {
     dem_body body;
     dem_rail_state state;
-    dem_quat start;                /* not spheres: orientation and spin of the step */
-    dem_vec3 turn;
-    dem_vec3 at, seen;             /* m, position at the last step: as if its path had crossed no
-                                      periodic face; as it was */
+    dem_quat start;                /* orientation at the last step */
+    dem_vec3 turn;                 /* rad/s, not spheres: spin of the step */
+    dem_vec3 at, seen, on;         /* m, position at the last step: as if its path had crossed no
+                                      periodic face; as it was; in the frame of its wall */
 } demi_rail;
 
 /* One level of the hierarchical grid: a class of radii with its own cells. */

@@ -451,7 +451,8 @@ static int demi_rails_check(const demi_reader *r) {
             a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
              demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
             !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
-            !demi_place(a->turn) || !demi_place(a->at) || !demi_place(a->seen))
+            !demi_place(a->turn) || !demi_place(a->at) || !demi_place(a->seen) ||
+            !demi_place(a->on))
             return demi_lie(r, "rail", i);
     }
     return 1;

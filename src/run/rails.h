@@ -10,8 +10,13 @@
    step obeys w = prescribed along locked axes and (J w) = L + T h along free ones, with the inertia
    J of the middle of that step. The body then rotates with w for the whole step, so the axis does
    not wander: its own free rotation would also turn about locked axes.
-   The velocity of a wall in the middle of the next step is extrapolated, 2 v(t) - v(t - dt/2). The
-   error of the path is of the order dt^2 and does not grow.
+   A rail of a wall. The body is carried by the rigid motion of the wall between its two poses, so
+   its path along locked axes is that of a point of the wall, for any step and integrator. Motion
+   relative to the wall, with the velocity of the rail and along free axes, is split: half before
+   the wall moves, half after. Velocities are those of the surface: v in the middle of the step,
+   or at its end with integrators that have no half kick, and the predicted one at its end. The
+   poses of the next step are known before it, except of servo walls, whose speed is taken as
+   constant; demi_rails_carry books what the change of their speed adds.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_OF dem_rail_desc
 static const demi_field_row demi_rail_fields[] = {
@@ -46,27 +51,56 @@ static void demi_rail_given(const dem_world *w, demi_rail *r, int i) {
         if (DEMI_ABS(by[k]) > DEM_R(1e-6)*w->bodies.pos[4*i + 3]) at[k] = now[k];
     r->at = demi_at(at);
 }
-/* Gives the velocity and spin that a rail prescribes for body i, in the middle of the next step
-   (ahead) or now; of axes that are not locked, any numbers. */
-static void demi_rail_wants(const dem_world *w, const demi_rail *r, int i, int ahead, dem_real *v,
+/* Returns the index of the wall that a rail follows; -1 if there is none. */
+static int demi_rail_wall(const dem_world *w, const demi_rail *r) {
+    const dem_wall wall = r->state.desc.wall;
+    return wall.id && demi_wall_there(w, wall) ? demi_wall_place(wall) : -1;
+}
+/* Gives the velocity and spin that a rail prescribes at x in a pose of its wall, or without a wall
+   (pose null); of axes that are not locked, any numbers. */
+static void demi_rail_wants(const demi_rail *r, const dem_pose *pose, dem_vec3 x, dem_real *v,
                             dem_real *s) {
     const dem_rail_desc *d = &r->state.desc;
-    dem_vec3 velocity = d->velocity, spin = d->spin;
-    if (d->wall.id && demi_wall_there(w, d->wall)) {
-        const demi_wall *wall = &w->walls[demi_wall_place(d->wall)];
-        const dem_vec3 x = demi_rail_place(w, r, i);
-        const dem_vec3 now = demi_surface_at(&wall->pose, x);
-        velocity = demi_add(velocity, now);
-        spin = demi_add(spin, wall->pose.spin);
-        if (ahead) {                            /* x in the middle of the last step */
-            const dem_vec3 mid = demi_sub(x, demi_scale(demi_at(w->bodies.half_vel + 4*i),
-                                                        w->clock.dt/2));
-            velocity = demi_add(velocity, demi_sub(now, demi_surface_at(&wall->mid, mid)));
-            spin = demi_add(spin, demi_sub(wall->pose.spin, wall->mid.spin));
-        }
-    }
-    demi_put(v, velocity);
-    demi_put(s, spin);
+    demi_put(v, pose ? demi_add(d->velocity, demi_surface_at(pose, x)) : d->velocity);
+    demi_put(s, pose ? demi_add(d->spin, pose->spin) : d->spin);
+}
+/* Returns by how much a body moves relative to its wall in a step, m. v: its mean velocity along
+   free axes. */
+static dem_vec3 demi_rail_strays(const dem_world *w, const demi_rail *r, const dem_pose *from,
+                                 const dem_real *v) {
+    dem_real by[3], flow[3];
+    int k;
+    demi_put(by, r->state.desc.velocity);
+    demi_put(flow, demi_surface_at(from, r->at));
+    for (k = 0; k < 3; k++) if (!(r->state.desc.axes >> k & 1)) by[k] = v[k] - flow[k];
+    return demi_scale(demi_at(by), w->clock.dt);
+}
+/* Returns where a body is after `part` of a step, 1/2 or 1, in which its wall moves from one pose
+   to another, m. gone: see demi_rail_strays. */
+static dem_vec3 demi_rail_ride(const demi_rail *r, dem_vec3 gone, const dem_pose *from,
+                               const dem_pose *to, dem_real part) {
+    const dem_vec3 half = demi_unrotate(from->rotation, demi_scale(gone, DEM_R(0.5)));
+    return demi_add(demi_add(to->position, demi_rotate(to->rotation, demi_add(r->on, half))),
+                    demi_scale(gone, part - DEM_R(0.5)));
+}
+/* Gives the velocity and spin that a rail will prescribe for body i in the next step. drift: its
+   mean velocity then along free axes. */
+static void demi_rail_ahead(const dem_world *w, const demi_rail *r, int i, const dem_real *drift,
+                            dem_real *v, dem_real *s) {
+    const int of = demi_rail_wall(w, r), halves = demi_integrator_of(w)->predicts;
+    const demi_wall *wall = of < 0 ? 0 : &w->walls[of];
+    dem_pose ahead;
+    if (!wall) { demi_rail_wants(r, 0, r->at, v, s); return; }
+    ahead = wall->pose;
+    if (wall->motion.kind != DEM_MOTION_FIXED)
+        demi_wall_pose_at(w, wall, w->clock.time + (double)w->clock.dt/(halves ? 2 : 1), &ahead);
+    if (!demi_pose_sane(&ahead)) ahead = wall->pose;        /* the step will fail */
+    demi_rail_wants(r, &ahead, demi_rail_ride(
+        r, demi_rail_strays(w, r, &wall->pose, drift), &wall->pose, &ahead,
+        halves ? DEM_R(0.5) : 1), v, s);
+    if (!halves && demi_shape_of(w, i))                     /* these rotate with the mean spin */
+        demi_put(s, demi_add(demi_at(s), demi_scale(demi_sub(wall->pose.spin, ahead.spin),
+                                                    DEM_R(0.5))));
 }
 /* Returns J x for a body with orientation q and principal moments I. */
 static dem_vec3 demi_inertia_times(dem_quat q, dem_vec3 I, dem_vec3 x) {
@@ -119,29 +153,43 @@ static double demi_rail_push(int locked, dem_real inertia, const dem_real *u, co
     }
     return power;
 }
+/* Adds work to that of a rail, J. */
+static void demi_rail_book(dem_world *w, demi_rail *r, double work) {
+    r->state.work += work;
+    if (!w->desc.ledger) return;
+    w->booked.energy[DEMI_E_WALLS] += work;
+    w->booked.throughput += fabs(work);
+}
 /* Adds the reaction of one rail to its body i. */
 static void demi_rail_act(dem_world *w, demi_rail *r, int i) {
     const int stepping = w->stage.forces_valid, locked = r->state.desc.axes;
-    const int halves = stepping && demi_integrator_of(w)->predicts;
+    const int predicts = demi_integrator_of(w)->predicts, halves = stepping && predicts;
     const dem_real h = stepping ? w->clock.dt : w->clock.dt/2;
+    const dem_real kick = predicts ? h : w->clock.dt;       /* of the next step */
     const demi_lane b = demi_lane_move(w, i);
-    dem_real *torque = w->bodies.torque + 4*i, v[3], s[3], force[3], moment[3];
+    dem_real *torque = w->bodies.torque + 4*i, *u = halves ? b.half : b.v;
+    dem_real v[3], s[3], force[3], moment[3];
     const dem_real none[3] = {0, 0, 0};
     const dem_real *spun = stepping && (halves || demi_shape_of(w, i)) ? w->bodies.half_spin + 4*i
         : w->bodies.spin + 4*i;
+    int k, of;
     if (!stepping) demi_rail_given(w, r, i);
-    demi_rail_wants(w, r, i, 1, v, s);
     r->at = demi_rail_place(w, r, i);
     r->seen = demi_at(w->bodies.pos + 4*i);
-    r->state.power = demi_rail_push(locked, w->bodies.mass[i], halves ? b.half : b.v, v, h, b.g,
-                                    b.f, force);
+    of = demi_rail_wall(w, r);
+    if (of >= 0 && (!stepping || w->walls[of].motion.kind == DEM_MOTION_FIXED))
+        r->on = demi_unrotate(w->walls[of].pose.rotation,
+                              demi_sub(r->at, w->walls[of].pose.position));
+    if (w->bodies.orienting) r->start = demi_quat_at(w->bodies.orient + 4*i);
+    for (k = 0; k < 3; k++) v[k] = u[k] + (b.f[k]*b.inv + b.g[k])*kick;
+    demi_rail_ahead(w, r, i, v, v, s);
+    r->state.power = demi_rail_push(locked, w->bodies.mass[i], u, v, kick, b.g, b.f, force);
     if (demi_shape_of(w, i) && locked >> 3) {
         const dem_vec3 L = stepping ? demi_at(w->bodies.angular + 4*i) : demi_angular_of(w, i);
         const dem_vec3 T = demi_at(torque);
         const dem_vec3 next = demi_rail_turn(w, i, locked >> 3, s, demi_add(L, demi_scale(T, h)),
                                              &r->turn);
         dem_real by[3];
-        int k;
         demi_put(by, demi_sub(demi_scale(demi_sub(next, L), 1/h), T));
         demi_put(s, r->turn);
         for (k = 0; k < 3; k++) {
@@ -149,18 +197,14 @@ static void demi_rail_act(dem_world *w, demi_rail *r, int i) {
             torque[k] += moment[k];
             r->state.power += (double)moment[k]*(double)(spun[k] + s[k])/2;
         }
-        r->start = demi_quat_at(w->bodies.orient + 4*i);
     } else
         r->state.power += demi_rail_push(locked >> 3, w->bodies.inv_inertia[i] > 0
-                                         ? 1/w->bodies.inv_inertia[i] : 0, spun, s, h, none,
+                                         ? 1/w->bodies.inv_inertia[i] : 0, spun, s, kick, none,
                                          torque, moment);
     r->state.force = demi_at(force);
     r->state.torque = demi_at(moment);
     if (!stepping) return;
-    r->state.work += r->state.power*(double)w->clock.dt;
-    if (!w->desc.ledger) return;
-    w->booked.energy[DEMI_E_WALLS] += r->state.power*(double)w->clock.dt;
-    w->booked.throughput += fabs(r->state.power)*(double)w->clock.dt;
+    demi_rail_book(w, r, r->state.power*(double)w->clock.dt);
 }
 /* Adds the reactions of all rails, once all forces are known. */
 static void demi_rails_act(dem_world *w) {
@@ -175,30 +219,108 @@ static void demi_rails_act(dem_world *w) {
         }
     }
 }
+/* Rotates body i from its orientation at the start of the step by the vector `by`, rad. full: its
+   spin at the end, along locked axes. */
+static void demi_rail_rotate(dem_world *w, const demi_rail *r, int i, const dem_real *by,
+                             const dem_real *full) {
+    const dem_quat q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_at(by)), r->start));
+    const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+    const int shaped = demi_shape_of(w, i) != 0;
+    dem_real spin[3], turn[3];
+    int e;
+    demi_quat_put(w->bodies.orient + 4*i, q);
+    if (shaped)
+        demi_put(spin, demi_spin_of(q, demi_add(demi_at(w->bodies.angular + 4*i),
+            demi_scale(demi_at(w->bodies.torque + 4*i), w->clock.dt/2)),
+            demi_v(1/I.x, 1/I.y, 1/I.z)));
+    demi_put(turn, r->turn);
+    for (e = 0; e < 3; e++) {
+        if (shaped) w->bodies.half_spin[4*i + e] = turn[e];
+        if (r->state.desc.axes >> (3 + e) & 1) w->bodies.spin[4*i + e] = full[e];
+        else if (shaped) w->bodies.spin[4*i + e] = spin[e];
+    }
+    if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
+}
 /* After the move of a step: rotates bodies that are not spheres about free axes alone. */
 static void demi_rails_move(dem_world *w) {
-    const dem_real dt = w->clock.dt;
-    int k, e;
+    int k;
     for (k = 0; k < w->rail_count; k++) {
         const demi_rail *r = &w->rails[k];
-        const int i = demi_rail_body(w, r), locked = r->state.desc.axes >> 3;
-        const demi_shape *shape = i < 0 ? 0 : demi_shape_of(w, i);
-        dem_quat q;
-        dem_vec3 I;
-        dem_real spin[3], turn[3];
-        if (!shape || !locked) continue;
-        q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(r->turn, dt)), r->start));
-        I = demi_at(w->bodies.moment + 4*i);
-        demi_quat_put(w->bodies.orient + 4*i, q);
-        demi_put(spin, demi_spin_of(q, demi_add(demi_at(w->bodies.angular + 4*i),
-            demi_scale(demi_at(w->bodies.torque + 4*i), dt/2)), demi_v(1/I.x, 1/I.y, 1/I.z)));
+        const int i = demi_rail_body(w, r);
+        dem_real by[3], turn[3];
+        if (i < 0 || !demi_shape_of(w, i) || !(r->state.desc.axes >> 3)) continue;
+        demi_put(by, demi_scale(r->turn, w->clock.dt));
         demi_put(turn, r->turn);
-        for (e = 0; e < 3; e++) {
-            w->bodies.half_spin[4*i + e] = turn[e];
-            w->bodies.spin[4*i + e] = locked >> e & 1 ? turn[e] : spin[e];
-        }
-        if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
+        demi_rail_rotate(w, r, i, by, turn);
     }
+}
+/* Returns the rotation from one pose to another as a vector, rad. */
+static dem_vec3 demi_pose_turned(const dem_pose *from, const dem_pose *to) {
+    double R[3][3], size, angle;
+    dem_quat q;
+    int i, j;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            R[i][j] = (double)demi_dot(demi_at(to->rotation + 3*i), demi_at(from->rotation + 3*j));
+    q = demi_quat_of(R);
+    size = sqrt((double)(q.x*q.x + q.y*q.y + q.z*q.z));
+    angle = 2*demi_atan2(size, fabs((double)q.w));
+    return demi_scale(demi_v(q.x, q.y, q.z),
+                      (dem_real)(size > 0 ? (q.w < 0 ? -angle : angle)/size : 0));
+}
+/* Carries body i with its wall, which moves from one pose by another in the middle of the step to a
+   third. Returns the change of its mean velocity, m/s. */
+static dem_real demi_rail_carry(dem_world *w, demi_rail *r, int i, const dem_pose *from,
+                                const dem_pose *mid, const dem_pose *to) {
+    const int locked = r->state.desc.axes, halves = demi_integrator_of(w)->predicts;
+    const demi_periods p = demi_periods_of(w);
+    const dem_vec3 off = demi_sub(r->at, r->seen), wrapped = demi_sub(off, demi_nearest(&p, off));
+    const dem_vec3 own = demi_scale(r->state.desc.spin, w->clock.dt);
+    const dem_vec3 gone = demi_rail_strays(w, r, from, w->bodies.half_vel + 4*i);
+    const dem_vec3 after = demi_scale(gone, DEM_R(0.5)), end = demi_rail_ride(r, gone, from, to, 1);
+    dem_real *half = w->bodies.half_vel + 4*i, *full = w->bodies.vel + 4*i;
+    dem_real x[3], free[3], stray[3], m[3], v[3], s[3], force[3], by[3], most = 0;
+    double work = 0;
+    int k;
+    demi_rail_wants(r, mid, demi_rail_ride(r, gone, from, mid, DEM_R(0.5)), m, s);
+    demi_rail_wants(r, to, end, v, s);
+    demi_put(x, demi_sub(end, wrapped));
+    demi_put(free, demi_sub(demi_add(r->at, demi_scale(demi_at(half), w->clock.dt)),
+                            demi_sub(end, after)));
+    demi_put(stray, after);
+    demi_put(by, demi_add(demi_pose_turned(from, to), own));
+    demi_put(force, r->state.force);
+    for (k = 0; k < 3; k++) {
+        const dem_real was = halves ? half[k] : full[k], now = halves ? m[k] : v[k];
+        if (!(locked >> (3 + k) & 1)) by[k] = w->bodies.half_spin[4*i + k]*w->clock.dt;
+        if (!(locked >> k & 1)) { stray[k] = free[k]; continue; }
+        work += (double)((now - was)*(w->bodies.mass[i]*(was + now) + force[k]*w->clock.dt))/2;
+        most = DEMI_MAX(most, DEMI_ABS(m[k] - half[k]));
+        w->bodies.pos[4*i + k] = x[k];
+        half[k] = m[k];
+        full[k] = v[k];
+    }
+    r->on = demi_add(r->on, demi_add(demi_unrotate(from->rotation, after),
+                                     demi_unrotate(to->rotation, demi_at(stray))));
+    demi_rail_book(w, r, work);
+    if (locked >> 3 && (demi_shape_of(w, i) || w->desc.orientations))
+        demi_rail_rotate(w, r, i, by, s);
+    else for (k = 0; k < 3; k++) if (locked >> (3 + k) & 1) w->bodies.spin[4*i + k] = s[k];
+    return most;
+}
+/* Carries all bodies on rails of wall `of`. */
+static void demi_rails_carry(dem_world *w, int of, const dem_pose *mid, const dem_pose *to) {
+    dem_real most = 0;
+    int k;
+    for (k = 0; k < w->rail_count; k++) {
+        demi_rail *r = &w->rails[k];
+        const int i = demi_rail_wall(w, r) == of ? demi_rail_body(w, r) : -1;
+        dem_real change = 0;
+        if (i >= 0) change = demi_rail_carry(w, r, i, &w->walls[of].pose, mid, to);
+        most = DEMI_MAX(most, change);
+    }
+    w->margin.step_gone += (double)(most*w->clock.dt);
+    w->margin.last_change += (double)most;
 }
 /* Returns the number of rails whose bodies still exist. */
 static int demi_rails_in_force(const dem_world *w) {
@@ -221,7 +343,7 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     dem_real v[3], s[3], own[6];
     dem_body_state state;
     demi_rail *r;
-    int i, k;
+    int i, k, of;
     if (demi_null(w, __func__, d, "desc")) return DEM_ERROR_ARGUMENT;
     i = demi_body_index(w, __func__, body);
     if (i < 0 || demi_rows_check(w, __func__, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
@@ -247,7 +369,8 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     r->body = body;
     r->state.desc = *d;
     r->at = r->seen = demi_at(w->bodies.pos + 4*i);
-    demi_rail_wants(w, r, i, 0, v, s);
+    of = demi_rail_wall(w, r);
+    demi_rail_wants(r, of < 0 ? 0 : &w->walls[of].pose, r->at, v, s);
     dem_body_get(w, body, &state);
     demi_put(own, state.velocity);
     demi_put(own + 3, state.spin);

@@ -459,6 +459,7 @@ static dem_result demi_step_move(dem_world *w) {
                              "motion", (unsigned long long)w->clock.steps, i + 1, DEMI_FARTHEST,
                              w->clock.time);
         }
+        if (w->rail_count) demi_rails_carry(w, i, &mid, &pose);
         wall->pose = pose;
         wall->mid = mid;
         speed = demi_wall_pace(w, i);
