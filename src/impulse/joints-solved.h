@@ -440,8 +440,25 @@ static void demi_rod_lay(dem_world *w, int i) {
         if (k >= r->rows) r->given[k] = 0;
     }
 }
+/* Returns the largest gap, m, that impulses may close: DEMI_EVEN of the way on which those of the
+   last step move the bodies, or round-off. */
+static double demi_rod_closed(const dem_world *w, const demi_rod *r) {
+    const demi_solver *s = &w->solver;
+    const dem_real pull = demi_length(demi_at(r->given))*(s->movers[r->a].inv + s->movers[r->b].inv);
+    dem_real far = 0;
+    int e;
+    for (e = 0; e < 2; e++) {
+        const int body = e ? r->b : r->a;
+        far = DEMI_MAX(far, demi_length(r->arm[e]));
+        if (body < w->bodies.count)
+            far = DEMI_MAX(far, demi_length(demi_at(w->bodies.pos + 4*body)));
+    }
+    return DEMI_MAX(DEMI_EVEN*(double)(pull*s->dt),
+                    8*(DEMI_SINGLE ? FLT_EPSILON : DBL_EPSILON)*(double)far);
+}
 /* Sets up all joints of this step: solver bodies of walls and space, rows, velocities before the
-   step, and the energies and gaps of each group for the energy guard. */
+   step, and the energies and gaps of each group for the energy guard. A group with a gap begins at
+   level 1: impulses that close a gap in a step would be far larger than those of the motion. */
 static void demi_joints_lay(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, e;
@@ -481,20 +498,19 @@ static void demi_joints_lay(dem_world *w) {
             demi_joint *j = w->joints + s->knots[i].rod;
             const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
             const dem_real gap = j->state.gap + j->state.tilt*size;
-            const demi_rod *r = s->rods + s->knots[i].rod;
-            const dem_real pull = demi_length(demi_at(r->given))*
-                (s->movers[r->a].inv + s->movers[r->b].inv)*s->dt;
             group->bank += j->bank;
             group->wide = DEMI_MAX(group->wide, (double)gap);
-            group->pull = DEMI_MAX(group->pull, (double)pull);
+            group->closed = DEMI_MAX(group->closed, demi_rod_closed(w, s->rods + s->knots[i].rod));
             j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
-            group->open |= (gap > 100*DEMI_JOINED*size) | (j->apart > few)*2;
+            group->open |= (j->apart > few)*2;
         } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
             demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
             (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
     }
-    for (i = 0; i < s->knot_count; i++)
-        s->knots[i].guarded = s->knots[i].wide > DEMI_SMOOTH*s->knots[i].pull;
+    for (i = 0; i < s->knot_count; i++) {
+        s->knots[i].guarded = s->knots[i].wide > s->knots[i].closed;
+        s->knots[i].open |= s->knots[i].guarded;
+    }
     s->factored = 0;
 }
 /* Warm start: applies the impulses of the last step, and those of motors with a given torque. */
@@ -579,10 +595,10 @@ static void demi_rod_bends(const dem_world *w, int joint, dem_real *bend) {
     for (k = 3; k < 5; k++) bend[k] = demi_dot(axis, r->along[k - 3]);
 }
 /* Computes the residual velocities of a joint's rows, m/s and rad/s. Their target is that its
-   points and axes coincide at the next detection. In a guarded group it is the change of velocity
-   in half a step in which the gap grows evenly (level 1), or the opposite of the velocity before
-   the step (level 2), unless `shifts` is 1, which asks for the gaps to be closed by displacements.
-   Returns the squared sum, (m/s)^2. */
+   points and axes coincide at the next detection. In a guarded group it is the relative velocity
+   half a step after the one at which they would move along with each other (level 1), or the
+   opposite of the velocity before the step (level 2), unless `shifts` is 1, which asks for the gaps
+   to be closed by displacements. Returns the squared sum, (m/s)^2. */
 static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *lacks) {
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + i;
@@ -703,8 +719,12 @@ static double demi_rod_work(const dem_world *w, const demi_rod *r) {
     return work;
 }
 /* Energy guard: raises the level of each group whose joints would do more work than the energy that
-   they have absorbed before. At level 2 they reverse their velocities, which does no work whatever
-   else acts. Returns the number of groups raised. */
+   they have absorbed before. At level 1 they ask for the relative velocity that the points have
+   half a step after they moved along with each other, -q dt/2, where q is their acceleration
+   relative to each other without forces. Before the step it was q dt/2, so their work is only
+   O(dt^4), and the forces are as smooth as q. Velocities that oscillate from step to step are
+   forgotten. At level 2 joints reverse their velocities, which does no work whatever else acts.
+   Returns the number of groups raised. */
 static int demi_joints_guard(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, n = 0;
@@ -722,7 +742,7 @@ static int demi_joints_guard(dem_world *w) {
     for (i = 0; i < s->knot_count && n; i++) s->knots[i].group = demi_knot_group(s, i);
     return n;
 }
-/* Closes the gaps of guarded groups by displacements, as far as the energy that they have absorbed
+/* Closes the gaps of guarded groups by displacements, as far as the energy that they may spend
    covers the work against gravity. Gaps that the user has made by moving a body are closed whatever
    the work. Returns the largest displacement, m. */
 static double demi_joints_shift(dem_world *w) {
@@ -732,16 +752,7 @@ static double demi_joints_shift(dem_world *w) {
     for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
     if (!any) return 0;
     demi_joints_solve(w, 1);
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = s->knots[i].kept = 0;
-    for (i = 0; i < w->joint_count; i++) {
-        const demi_rod *r = s->rods + i;
-        dem_real u[6];
-        int e;
-        if (!r->rows) continue;
-        demi_rod_velocity(s, r, u);
-        for (e = 0; e < 5; e++)
-            s->knots[demi_knot_group(s, r->knot)].kept += fabs((double)(r->given[e]*u[e]));
-    }
+    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i;
         const double fall = demi_d3_dot(demi_d3_of(w->desc.gravity), demi_d3_at(k->x));
@@ -750,9 +761,8 @@ static double demi_joints_shift(dem_world *w) {
     }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i, *group = s->knots + k->group;
-        const double spare = DEMI_MAX(0, group->bank -
-                                      DEMI_MIN(group->kept, DEMI_BANKED/2*group->kinetic));
-        const double paid = group->open > 1 || !(group->work > spare) ? 1 : spare/group->work;
+        const double paid = group->open > 1 || !(group->work > group->spare) ? 1
+            : group->spare/group->work;
         const dem_real by = (dem_real)paid*s->dt;
         const dem_vec3 way = demi_scale(demi_d3_real(demi_d3_at(k->x)), by);
         const dem_vec3 turn = demi_scale(demi_d3_real(demi_d3_at(k->x + 3)), by);
@@ -775,22 +785,38 @@ static double demi_joints_shift(dem_world *w) {
 }
 /* Adds the energy that joints have absorbed in this step to what they may return later, at most
    DEMI_BANKED of the kinetic energy of their group. They need it because velocities that keep the
-   points together oscillate about those that conserve energy. */
+   points together oscillate about those that conserve energy. Displacements may spend what was
+   there before this step, except for twice what that oscillation needs: half of p J u. */
 static void demi_joints_bank(dem_world *w) {
     demi_solver *s = &w->solver;
-    int i;
-    for (i = 0; i < s->knot_count; i++) s->knots[i].bank = 0;
-    for (i = 0; i < w->joint_count; i++) {
-        const demi_rod *r = s->rods + i;
-        w->joints[i].bank -= w->joints[i].held;
-        if (r->rows) s->knots[demi_knot_group(s, r->knot)].bank += w->joints[i].bank;
+    int i, k;
+    for (i = 0; i < s->knot_count; i++) {
+        s->knots[i].spare = s->knots[i].bank;
+        s->knots[i].bank = s->knots[i].work = 0;
     }
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        const demi_knot *k = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
-        if (!k) w->joints[i].bank = 0;
-        else if (k->bank > DEMI_BANKED*k->kinetic)
-            w->joints[i].bank *= DEMI_BANKED*k->kinetic/k->bank;
+        demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+        dem_real u[6];
+        w->joints[i].bank -= w->joints[i].held;
+        if (!r->rows) continue;
+        group->bank += w->joints[i].bank;
+        demi_rod_velocity(s, r, u);
+        for (k = 0; k < 5; k++) group->work += fabs((double)(r->given[k]*u[k]));
+    }
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        const demi_knot *group = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
+        if (!group) w->joints[i].bank = 0;
+        else if (group->bank > DEMI_BANKED*group->kinetic)
+            w->joints[i].bank *= DEMI_BANKED*group->kinetic/group->bank;
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        demi_knot *group = s->knots + i;
+        const double most = DEMI_BANKED*group->kinetic;
+        group->bank = DEMI_MIN(group->bank, most);
+        group->spare = DEMI_MAX(0, DEMI_MIN(group->spare, group->bank) -
+                                DEMI_MIN(group->work, most/2));
     }
 }
 /* Returns the gap of joint i at the next detection, m, including the tilt times demi_rod_size. */

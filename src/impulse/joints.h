@@ -17,9 +17,10 @@
    Energy guard: the impulses p of a group of connected joints do the work
    p (J u before + J u after)/2, exactly. If this exceeds the energy that the group has absorbed
    before (remembered up to 1e-3 of its kinetic energy), the target of its rows becomes
-   J u after = -J u before/2, and if necessary -J u before, which does no work whatever contacts,
-   motors and fields do. The remaining gaps are closed by displacements that leave velocities
-   unchanged.
+   J u after = -q dt/2, with the acceleration q of a relative to b in the rows without forces, and
+   if necessary -J u before, which does no work whatever contacts, motors and fields do. With the
+   first, J u before = q dt/2, the work is O(dt^4), forces are smooth, and the gap is q dt^2/4.
+   Displacements that leave velocities unchanged close it as soon as the energy covers them.
    A motor with a torque limit is a row until it reaches the limit, and then a given torque.
    Owns w->joints; the system and its solution are in >>joints-solved. Tests:
    tests/impulse/test_joints.c.
