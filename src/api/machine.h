@@ -115,7 +115,8 @@ DEM_API dem_wall dem_wall_profile_add(dem_world *world, dem_material material,
                                  const dem_profile *profile,
                                  dem_edge_rule rule);
 /* Adds a triangle mesh. Both sides repel. Meshes that do not move relative to each other act as one
-   surface, however it is divided; so do profiles (>>surfaces). */
+   surface, however it is divided; so do profiles (>>surfaces). A wall is at rest until its motion
+   begins. */
 DEM_API dem_wall dem_wall_mesh_add(dem_world *world, dem_material material, const dem_mesh *mesh);
 /* Adds a wall of spheres of one radius (m) at positions (count x 3, m), as in [MIL]. All forces are
    multiplied by share (0 < share <= 1), because overlapping spheres represent one surface. */

@@ -306,6 +306,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
         demi_visit(s, &wall->servo, sizeof wall->servo);
+        demi_visit(s, &wall->idle, sizeof wall->idle);
         demi_visit(s, &wall->glide, sizeof wall->glide);
         demi_visit(s, &wall->glides, sizeof wall->glides);
         for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);

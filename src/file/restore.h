@@ -409,7 +409,8 @@ static int demi_walls_check(const demi_reader *r) {
             !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
             return demi_lie(r, "pose of wall", i);
         if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k) ||
-            demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k))
+            demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k) ||
+            (wall->idle && !(wall->idle == 1 && demi_wall_waits(wall, r->t->clock.time))))
             return demi_lie(r, "motion of wall", i);
         if (!demi_place(wall->glide) || wall->glides != (demi_dot(wall->glide, wall->glide) > 0))
             return demi_lie(r, "surface velocity of wall", i);

@@ -353,7 +353,6 @@ static void demi_ahead(dem_world *w) {
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
-        wall->was = wall->ahead;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);

@@ -28,7 +28,7 @@
    it is not part of the same piston. first: the world whose walls move. */
 static double demi_servo_force_of(const dem_world *first, const dem_world *w, int of, int i) {
     const demi_wall *walls = first->walls;
-    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_together(&walls[i], &walls[of])) return 0;
+    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_alike(&walls[i], &walls[of])) return 0;
     return -(double)demi_dot(w->walls[i].loads.force, demi_unit(walls[of].motion.velocity));
 }
 /* Returns the sum over the piston. */
@@ -64,7 +64,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;
-            if (c->b >= 0 || !demi_walls_together(&walls[c->wall], &walls[of]) ||
+            if (c->b >= 0 || !demi_walls_alike(&walls[c->wall], &walls[of]) ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
             demi_kept_coefs(w, c, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
@@ -106,7 +106,7 @@ static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double 
 static int demi_servo_leader(const dem_world *first, int i) {
     int k = 0;
     while (k < i && (first->walls[k].kind == DEMI_WALL_NONE ||
-                     !demi_walls_together(&first->walls[k], &first->walls[i]))) k++;
+                     !demi_walls_alike(&first->walls[k], &first->walls[i]))) k++;
     return k;
 }
 /* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */

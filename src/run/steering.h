@@ -118,29 +118,28 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     demi_wall next;
     const void *rows;
     void *old;
-    int dropped, alone;
+    int dropped, remains;
     dem_result result;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
     if (result != DEM_OK) return result;
     /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
        decides which of its periodic images are at rest relative to it */
-    alone = demi_wall_stays(&w->walls[i], &next) &&
-        demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
-        (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
-                           next.motion.kind != DEM_MOTION_ROTATING));
-    dropped = alone || demi_list_drop(w);
+    remains = demi_wall_stays(&w->walls[i], &next) && demi_wall_remains(w, &next, i) &&
+        (!w->repeating || (!demi_motion_turns(&w->walls[i].motion) &&
+                           !demi_motion_turns(&next.motion)));
+    dropped = remains || demi_list_drop(w);
     rows = dropped ? w->walls[i].motion.table : next.motion.table;
     memcpy(&old, &rows, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     if (!dropped) return demi_no_memory(w, __func__);
-    if (!alone) demi_surfaces_outdated(w);
-    if (!alone || !demi_wall_led(w, &w->walls[i]))
+    if (!remains) demi_surfaces_outdated(w);
+    if (!remains || !demi_wall_led(w, &w->walls[i]))
         w->stage.forces_valid = w->stage.primed = 0;
     demi_wall_before(w, i);
     w->walls[i] = next;
     demi_wall_after(w, i);
     demi_built(w, __func__);
-    if (!alone || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
+    if (!remains || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
     return DEM_OK;
 }

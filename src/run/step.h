@@ -446,6 +446,7 @@ static dem_result demi_step_move(dem_world *w) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose = wall->pose, mid = wall->mid;
         double speed;
+        if (demi_response_is(w, DEMI_MIDWAY)) wall->was = wall->ahead;     /* once per step */
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(w, wall, w->clock.time, &pose);
         if (!demi_response_is(w, DEMI_MIDWAY))
@@ -697,13 +698,38 @@ static dem_result demi_member_crushed(dem_world *w) {
                      b < 0 ? (unsigned)w->walls[wall].id : (unsigned)w->bodies.slot[b] + 1,
                      overlap, (double)w->desc.overlap_stop);
 }
+static dem_result demi_member_part(dem_world *w) {
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+    demi_surfaces_outdated(w);
+    return DEM_OK;
+}
+/* Begins the motions that wait until the time of contact detection. Such a wall may leave a surface
+   of walls at rest. After DEM_ERROR_MEMORY the next call tries again. */
+static dem_result demi_motions_begin(dem_world *h) {
+    dem_world *first = demi_member(h, 0);
+    const int midway = demi_response_is(h, DEMI_MIDWAY);
+    const double now = h->clock.time + midway*(double)h->clock.dt/2;
+    int i, parts = 0;
+    for (i = 0; i < first->wall_count; i++)
+        if (first->walls[i].idle && !demi_wall_waits(&first->walls[i], now))
+            parts |= demi_wall_parts(first, i) | 4;
+    if (!parts) return DEM_OK;
+    if (parts & 2 || (parts & 1 && h->team)) {
+        const dem_result result = demi_all_agree(h, demi_member_part);
+        h->stage.list_valid = 0;
+        if (result != DEM_OK) return result;
+    } else if (parts & 1) h->facets_valid = 0;
+    for (i = 0; i < first->wall_count; i++)
+        first->walls[i].idle = first->walls[i].idle && demi_wall_waits(&first->walls[i], now);
+    return DEM_OK;
+}
 /* The part of a step after its move: 2 search, 3 to 5 forces. desc.overlap_stop and, with impulses,
    desc.unsolved_stops make a step fail that is complete; all members then agree that it is. */
 static dem_result demi_step_answer(dem_world *h) {
     const uint64_t unsolved = h->booked.unsolved;
+    dem_result result = demi_motions_begin(h);
     const int search = demi_list_due(h);
-    dem_result result = DEM_OK;
-    if (search) {
+    if (result == DEM_OK && search) {
         result = demi_all_rebuild(h);
         if (result == DEM_OK && demi_outgrown(h)) h->stage.dt_valid = 0;
     }
@@ -757,8 +783,9 @@ static dem_result demi_step_once(dem_world *h) {
 
 /* demi_refresh at the positions of contact detection. */
 static dem_result demi_refresh_answer(dem_world *h) {
-    dem_result result = DEM_OK;
+    dem_result result = demi_motions_begin(h);
     int stale = 0;
+    if (result != DEM_OK) return result;
     if (h->stage.pairs_changed) {               /* half-step velocities belong to the old forces */
         h->stage.primed = 0;
         if (!demi_list_drop(h)) return demi_no_memory(h, "dem_world_step");

@@ -38,15 +38,9 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
         demi_wall *b = &to->walls[i];
         *b = first ? first->walls[i] : from->walls[i];
         if (!first && !demi_wall_own(to, b)) return 0;
-        if (first) b->motion.kind = DEM_MOTION_FIXED;
         to->wall_count = i + 1;
     }
-    if (!first) return demi_surfaces_make(to);
-    if (!DEMI_COPY(to, to->surfaces, first->surfaces, first->surface_count)) return 0;
-    to->surface_count = first->surface_count;
-    to->sheeted = first->sheeted;
-    to->effects.scales = first->effects.scales;
-    return to->facets_valid = 1;
+    return first ? demi_surfaces_share(to, first) : demi_surfaces_make(to);
 }
 /* Copies the shapes of a scene; slabs after the first share those of the first. Returns 0 if memory
    ran out. */
@@ -489,6 +483,8 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     demi_slab_sums_clear(w, DEMI_SUM | DEMI_LARGEST);
     memset(&w->booked.crushed, 0, sizeof w->booked.crushed);
     for (i = 0; i < w->wall_count; i++) {
+        if (w->walls[i].idle != from->walls[i].idle) demi_surfaces_outdated(w);
+        w->walls[i].idle = from->walls[i].idle;
         w->walls[i].pose = from->walls[i].pose;
         w->walls[i].servo = from->walls[i].servo;
         w->walls[i].mid = from->walls[i].mid;

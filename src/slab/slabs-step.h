@@ -572,6 +572,19 @@ static dem_result demi_slabs_migrate(dem_slabs *s) {
         demi_slabs_phase(s, demi_slab_migrate);
     }
 }
+/* Makes the surfaces of the first slab again if they are outdated, and shares them with the others.
+   If memory runs out, the next agreement fails. */
+static void demi_slabs_surfaces(dem_slabs *s) {
+    dem_world *first = s->slabs[0].world;
+    int k, ok = 1;
+    for (k = 1; k < s->local; k++)              /* while those that they share still exist */
+        if (!s->slabs[k].world->facets_valid) demi_surfaces_free(s->slabs[k].world);
+    for (k = 0; k < s->local && ok; k++) {
+        dem_world *w = s->slabs[k].world;
+        if (!w->facets_valid) ok = k ? demi_surfaces_share(w, first) : demi_surfaces_make(first);
+        if (!ok) s->slabs[k].result = demi_no_memory(w, "dem_slabs_step");
+    }
+}
 /* `rebuild` of demi_team. After DEM_ERROR_MEMORY every grain is still in exactly one slab, with its
    contact history; the next call starts again. */
 static dem_result demi_slabs_rebuild(dem_world *h) {
@@ -579,6 +592,7 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
     const double skin_before = h->margin.skin_auto;
     dem_result result;
     h->stage.list_valid = 0;
+    demi_slabs_surfaces(s);
     result = demi_slabs_try(s, demi_slab_drop);
     if (s->count > 1) {
         if (result == DEM_OK) result = demi_slabs_skin(s);

@@ -132,6 +132,7 @@ static int demi_wall_keeps(const dem_world *w, const demi_wall *wall, int axis) 
         ? &w->walls[wall->lead].motion : &wall->motion;
     const dem_vec3 e = demi_v(axis == 0, axis == 1, axis == 2);
     int k, keeps = wall->repeats[axis];
+    if (demi_wall_rests(wall)) return keeps;
     if (m->kind == DEM_MOTION_ROTATING)
         keeps = keeps && demi_length(demi_cross(demi_unit(m->axis), e)) <= DEM_R(1e-6);
     for (k = 0; k < m->table_count && demi_tabled(m); k++) {

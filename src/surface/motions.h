@@ -183,7 +183,7 @@ static void demi_wall_pose_at(const dem_world *world, const demi_wall *wall, dou
     case DEM_MOTION_ROTATING: {
         const dem_vec3 axis = demi_unit(m->axis);
         double turn[9];
-        if (t < 0) break;
+        if (t < 0 || !(DEMI_ABS(m->speed) > 0)) break;
         gone = demi_ramp(t, m->ramp, &part);
         demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
                       fmod((double)m->speed*gone, 2*DEMI_PI));

@@ -9,8 +9,9 @@
    (wall->joined), which has the form of a wall. Its number as a candidate (>>lists) is wall_count
    or more, and `whose` tells which wall a face, edge or corner belongs to: contacts act on that
    wall and use its material. Surfaces are made again when a wall is added, removed or moved
-   otherwise. Tessellations of curved walls (>>tessellate) follow the joined surfaces: one for each
-   scale of bodies that need it, which is the power of two below their radius.
+   otherwise, and when a motion begins. Tessellations of curved walls (>>tessellate) follow the
+   joined surfaces: one for each scale of bodies that need it, which is the power of two below their
+   radius.
    This part owns w->surfaces and the weights of facets.
    --------------------------------------------------------------------------------------------- */
 /* The surface with this number: a wall, or a joined surface. */
@@ -459,6 +460,35 @@ static int demi_surfaces_make(dem_world *w) {
     demi_walls_repeat(w);                       /* now of the joined ones, too */
     w->facets_valid = ok;
     return ok;
+}
+
+/* Returns what changes when the motion of wall `place` begins: 2 surfaces, 1 only groups of walls,
+   0 nothing. Relative to walls that are moved alike it remains at rest. */
+static int demi_wall_parts(const dem_world *w, int place) {
+    const demi_wall *wall = &w->walls[place], *other = w->walls;
+    int parts = w->repeating && demi_motion_turns(&wall->motion) ? 2 : 0;
+    for (; other < w->walls + w->wall_count; other++)
+        if (other->kind != DEMI_WALL_NONE && demi_walls_together(wall, other) &&
+            !demi_walls_alike(wall, other))
+            parts |= demi_faceted(wall) || demi_faceted(other) || wall->covered || other->covered
+                ? 2 : 1;
+    return parts;
+}
+/* Gives another slab the surfaces of the first one of its process, and what these say about the
+   walls. Returns 0 if memory ran out. */
+static int demi_surfaces_share(dem_world *to, const dem_world *first) {
+    int i;
+    for (i = 0; i < to->wall_count; i++) {
+        const dem_wall_loads loads = to->walls[i].loads;
+        to->walls[i] = first->walls[i];
+        to->walls[i].loads = loads;
+        to->walls[i].motion.kind = DEM_MOTION_FIXED;
+    }
+    if (!DEMI_COPY(to, to->surfaces, first->surfaces, first->surface_count)) return 0;
+    to->surface_count = first->surface_count;
+    to->sheeted = first->sheeted;
+    to->effects.scales = first->effects.scales;
+    return to->facets_valid = 1;
 }
 
 /* Here, because it changes which walls form a surface if the materials ignored each other before

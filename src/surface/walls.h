@@ -51,35 +51,94 @@ static uint64_t demi_digest_table(const void *item) {
     }
     return h;
 }
-/* True if two walls are at rest relative to each other: both fixed, or moved alike. */
-static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
-    const dem_motion *m = &a->motion, *o = &b->motion;
-    if (a == b) return 1;
-    if (m->kind != o->kind || m->kind == DEM_MOTION_USER || m->kind == DEM_MOTION_TABLE) return 0;
-    if (m->kind == DEM_MOTION_FIXED) return 1;
-    if (memcmp(&m->start, &o->start, sizeof m->start) ||
-        memcmp(&m->ramp, &o->ramp, sizeof m->ramp) ||
-        memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
-    if (m->kind == DEM_MOTION_SERVO)
-        return !memcmp(&m->load, &o->load, sizeof m->load) &&
-            !memcmp(&m->area, &o->area, sizeof m->area) &&
-            !memcmp(&m->travel, &o->travel, sizeof m->travel) &&
-            m->table_repeats == o->table_repeats && demi_digest_table(a) == demi_digest_table(b);
-    return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
-        ? !memcmp(&m->point, &o->point, sizeof m->point) &&
-          !memcmp(&m->axis, &o->axis, sizeof m->axis) &&
-          !memcmp(&m->speed, &o->speed, sizeof m->speed)
-        : !memcmp(&m->amplitude, &o->amplitude, sizeof m->amplitude) &&
-          !memcmp(&m->frequency, &o->frequency, sizeof m->frequency) &&
-          !memcmp(&m->phase, &o->phase, sizeof m->phase);
+/* Bound on the rounding error of a difference of vectors of such a length. */
+static dem_real demi_rounding(dem_real length) {
+    return 8*(DEMI_SINGLE ? (dem_real)FLT_EPSILON : (dem_real)DBL_EPSILON)*length;
 }
-
-/* True if no other wall moves with this one. */
-static int demi_wall_alone(const dem_world *w, const demi_wall *wall, int place) {
+/* True if two vectors are equal, but for rounding errors. */
+static int demi_vectors_alike(dem_vec3 a, dem_vec3 b) {
+    return demi_length(demi_sub(a, b)) <= demi_rounding(demi_length(a));
+}
+static int demi_equal(double a, double b) { return !(a < b) && !(a > b); }
+/* True if a motion may rotate its wall. */
+static int demi_motion_turns(const dem_motion *m) {
+    int k, turns = m->kind == DEM_MOTION_ROTATING;
+    for (k = 0; k < m->table_count && m->kind == DEM_MOTION_TABLE; k++)
+        turns |= fabs(m->table[k].rotation.w) < 1;
+    return turns;
+}
+/* True if the tables of two walls have the same rows and, if a row rotates the walls, the same
+   point. */
+static int demi_tables_alike(const demi_wall *a, const demi_wall *b) {
+    const dem_motion *m = &a->motion, *o = &b->motion;
+    if (m->table_count != o->table_count || m->table_repeats != o->table_repeats) return 0;
+    return (!demi_motion_turns(m) || demi_vectors_alike(m->point, o->point)) &&
+        demi_digest_table(a) == demi_digest_table(b);
+}
+/* True if two walls are moved alike, so that they are at rest relative to each other at all times:
+   both are fixed, or have equal motions that start together. */
+static int demi_walls_alike(const demi_wall *a, const demi_wall *b) {
+    const dem_motion *m = &a->motion, *o = &b->motion;
+    const dem_vec3 turns = demi_scale(demi_unit(m->axis), m->speed);
+    if (a == b) return 1;
+    if (m->kind != o->kind || m->kind == DEM_MOTION_USER) return 0;
+    if (m->kind == DEM_MOTION_FIXED) return 1;
+    if (!demi_equal(m->start, o->start)) return 0;
+    if (m->kind == DEM_MOTION_TABLE) return demi_tables_alike(a, b);
+    if (!demi_equal(m->ramp, o->ramp)) return 0;
+    switch (m->kind) {
+    case DEM_MOTION_ROTATING:
+        return demi_vectors_alike(turns, demi_scale(demi_unit(o->axis), o->speed)) &&
+            demi_length(demi_cross(demi_unit(m->axis), demi_sub(m->point, o->point))) <=
+            demi_rounding(demi_length(m->point) + demi_length(o->point));
+    case DEM_MOTION_OSCILLATING:
+        return demi_vectors_alike(demi_scale(demi_unit(m->velocity), m->amplitude),
+                                  demi_scale(demi_unit(o->velocity), o->amplitude)) &&
+            demi_equal((double)m->frequency, (double)o->frequency) &&
+            demi_equal((double)m->phase, (double)o->phase);
+    case DEM_MOTION_SERVO:
+        if (!demi_equal((double)m->load, (double)o->load) ||
+            !demi_equal((double)m->area, (double)o->area) ||
+            !demi_equal((double)m->travel, (double)o->travel) || !demi_tables_alike(a, b))
+            return 0;
+    /* fall through */
+    default: return demi_vectors_alike(m->velocity, o->velocity);
+    }
+}
+/* True if a wall has a motion that has not begun at a time, s, and until then leaves the wall where
+   it was set. */
+static int demi_wall_waits(const demi_wall *wall, double time) {
+    const dem_motion *m = &wall->motion;
+    if (m->kind == DEM_MOTION_FIXED || m->kind == DEM_MOTION_USER || !(time < m->start)) return 0;
+    return m->kind != DEM_MOTION_TABLE || (!(demi_size(m->table->position) > 0) &&
+                                           !(fabs(m->table->rotation.w) < 1));
+}
+/* True if a wall is where it was when its motion was set, and does not move: it is fixed, its
+   motion has not begun (wall->idle), or its speed is 0. */
+static int demi_wall_rests(const demi_wall *wall) {
+    const dem_motion *m = &wall->motion;
+    switch (m->kind) {
+    case DEM_MOTION_FIXED: return 1;
+    case DEM_MOTION_TRANSLATING: return wall->idle || !(demi_size(m->velocity) > 0);
+    case DEM_MOTION_ROTATING: return wall->idle || !(DEMI_ABS(m->speed) > 0);
+    case DEM_MOTION_OSCILLATING: return wall->idle || !(DEMI_ABS(m->amplitude) > 0);
+    default: return wall->idle;
+    }
+}
+/* True if two walls are at rest relative to each other. */
+static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
+    return (demi_wall_rests(a) && demi_wall_rests(b)) || demi_walls_alike(a, b);
+}
+/* True if wall `place` is at rest relative to the same other walls when it becomes `next`, and the
+   surface that it is part of remains as it is. */
+static int demi_wall_remains(const dem_world *w, const demi_wall *next, int place) {
+    const demi_wall *wall = &w->walls[place];
+    const int rests = demi_wall_rests(wall) && demi_wall_rests(next);
     int i;
     for (i = 0; i < w->wall_count; i++)
         if (i != place && w->walls[i].kind != DEMI_WALL_NONE &&
-            demi_walls_together(&w->walls[i], wall)) return 0;
+            (demi_walls_together(&w->walls[i], wall) ? !rests
+             : demi_walls_together(&w->walls[i], next))) return 0;
     return 1;
 }
 /* Called when a wall is added, removed or moved otherwise. Surfaces are made again (>>surfaces),
@@ -713,6 +772,7 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     memset(&laid.servo, 0, sizeof laid.servo);
     laid.servo.time = laid.motion.start;
     laid.symmetric = demi_wall_symmetric(&laid);
+    laid.idle = demi_wall_waits(&laid, w->clock.time);
     demi_wall_pose_at(w, &laid, w->clock.time, &laid.pose);
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {

@@ -10,10 +10,11 @@ static const double R = 2e-3;
 enum { BALL, CLUMP, ELLIPSOID, CUBE, ROCK, UNION, POLYGON, BODIES };
 static const char *const bodies[] = {"ball", "clump", "ellipsoid", "cube", "rock", "union", "polygon"};
 enum { PLANE, MESH, MESHES, PLANES, PLANE_AND_MESH, PROFILES, BOXES, BOXES_IN_MESH, STACKED, JUNCTIONS, FOLDS, OVERLAPS, SLIVERS,
-       DOUBLED, PERIODIC, BELTS, FLOORS };
+       DOUBLED, PERIODIC, IMAGES, WAITING, RESTING, TURNING, TABLED, BELTS, FLOORS };
 static const char *const floors[] = {"plane", "one mesh", "two meshes", "two planes", "plane and mesh", "two profiles", "ten boxes",
     "ten boxes in a mesh", "boxes on a box", "T-junctions", "folded triangles", "meshes that overlap", "slivers", "doubled triangles",
-    "periodic seam", "belts"};
+    "periodic seam", "periodic seam that turns later", "boxes whose motions begin later", "boxes of speed 0", "boxes that turn alike", "boxes led by equal tables",
+    "belts"};
 
 /* Rectangles x0 z0 x1 z1 (count x 4, m) at y = 0, two triangles each. */
 static dem_wall floor_of(dem_world *w, dem_material m, int count, const double *q) {
@@ -62,6 +63,45 @@ static dem_wall boxes_of(dem_world *w, dem_material m, int count, int one, doubl
     }
     return wall;
 }
+/* A rotation about the y axis, written in several ways. */
+static dem_motion turn_of(int k, double speed) {
+    dem_motion m = DEM_MOTION;
+    m.kind = DEM_MOTION_ROTATING;
+    m.axis = at(0, k%3 - 1.5, 0);
+    m.speed = (dem_real)(k%3 < 2 ? -speed : speed);
+    m.point = at(0, k*R, 0);
+    return m;
+}
+/* Gives the boxes of a floor motions that leave them at rest relative to each other. */
+static void boxes_move(dem_world *w, int kind) {
+    dem_motion_row rows[3];
+    int k;
+    for (k = 0; k < 10; k++) {
+        dem_motion m = turn_of(k, kind == TURNING ? 4 : kind == RESTING ? 0 : 9);
+        dem_wall wall;
+        wall.id = k + 1;
+        memset(rows, 0, sizeof rows);
+        rows[1].time = 0.01;
+        rows[2].time = 0.02;
+        rows[1].position = at(0, 0, 0.1*R);
+        rows[2].position = at(0.2*R, kind == WAITING ? R : 0, 0.1*R);
+        if (kind == TABLED || (kind == WAITING && k == 4)) {
+            m.kind = DEM_MOTION_TABLE;
+            m.table = rows;
+            m.table_count = 3;
+        } else if (kind != TURNING && k%5 != 1) {
+            if (k%5 == 0) continue;             /* fixed */
+            m.kind = k%5 == 2 ? DEM_MOTION_TRANSLATING : DEM_MOTION_OSCILLATING;
+            if (k == 9 && kind == WAITING && w->desc.response == DEM_RESPONSE_SPRINGS) m.kind = DEM_MOTION_SERVO;
+            if (kind == WAITING || k%5 > 2) m.velocity = at(0, 1 + k, 0);
+            m.frequency = 50;
+            m.load = 1;
+            m.amplitude = kind == WAITING ? (dem_real)R : 0;
+        }
+        if (kind == WAITING) m.start = 3 + k%2;
+        CHECK_EQ(dem_wall_motion_set(w, wall, &m), DEM_OK);
+    }
+}
 /* A floor at y = 0 about x = 0; answers its last wall. */
 static dem_wall floor_add(dem_world *w, dem_material m, int kind) {
     const double L = 30*R;
@@ -78,7 +118,14 @@ static dem_wall floor_add(dem_world *w, dem_material m, int kind) {
         return floor_of(w, m, 1, q);
     }
     case MESH: { const double q[4] = {-L, -L, L, L}; return floor_of(w, m, 1, q); }
-    case PERIODIC: { const double q[4] = {-10*R, -10*R, 10*R, 10*R}; return floor_of(w, m, 1, q); }
+    case PERIODIC: case IMAGES: {
+        const double q[4] = {-10*R, -10*R, 10*R, 10*R};
+        last = floor_of(w, m, 1, q);
+        motion = turn_of(1, 9);
+        motion.start = 3;
+        if (kind == IMAGES) dem_wall_motion_set(w, last, &motion);
+        return last;
+    }
     case MESHES: case BELTS: {
         const double a[4] = {-L, -L, 0, L}, b[4] = {0, -L, L, L};
         floor_of(w, m, 1, a);
@@ -100,6 +147,10 @@ static dem_wall floor_add(dem_world *w, dem_material m, int kind) {
         profile.vertices = b;
         return dem_wall_profile_add(w, m, &profile, DEM_EDGE_RESOLVED);
     }
+    case WAITING: case RESTING: case TURNING: case TABLED:
+        last = boxes_of(w, m, 10, 0, 1.3*R, -4*R, 0, L);
+        boxes_move(w, kind);
+        return last;
     case BOXES: return boxes_of(w, m, 10, 0, 1.3*R, -4*R, 0, L);
     case BOXES_IN_MESH: return boxes_of(w, m, 10, 1, 1.3*R, -4*R, 0, L);
     case STACKED: boxes_of(w, m, 1, 0, 13*R, -8*R, -4*R, 2*L); return boxes_of(w, m, 10, 0, 1.3*R, -4*R, 0, L);
@@ -169,6 +220,7 @@ static dem_shape shape_of(dem_world *w, int body) {
     }
 }
 static double floor_restitution = 0.3;
+static scene_memory *floor_memory;
 static dem_world *floor_world(int body, int floor, int impulses, dem_body *b) {
     dem_world_desc d = DEM_WORLD_DESC;
     dem_material m;
@@ -178,7 +230,8 @@ static dem_world *floor_world(int body, int floor, int impulses, dem_body *b) {
     d.planar = body == POLYGON;
     d.impact_speed = DEM_R(0.2);
     if (impulses) { d.response = DEM_RESPONSE_IMPULSES; d.dt = DEM_R(1e-4); }
-    if (floor == PERIODIC) {
+    if (floor_memory) scene_memory_use(floor_memory, &d);
+    if (floor == PERIODIC || floor == IMAGES) {
         d.boundary[0] = DEM_BOUNDARY_PERIODIC;
         d.domain = box_of(-10*R, -20*R, -20*R, 10*R, 20*R, 20*R);
     }
@@ -219,7 +272,7 @@ static slide slide_of(int body, int first, int floor, int impulses, dem_body_sta
     s.position.x = (dem_real)(-way/2);
     s.position.z = 0;
     dem_body_set(p, a, &s);
-    if (floor == PERIODIC) s.position.x += (dem_real)(10*R);
+    if (floor == PERIODIC || floor == IMAGES) s.position.x += (dem_real)(10*R);
     dem_body_set(w, b, &s);
     for (k = 0; k < 40; k++) {
         dem_body_state x, y;
@@ -264,6 +317,38 @@ static double table_of(int impulses, slide limit) {
         }
     }
     return worst;
+}
+
+/* A floor of ten boxes. Five of them, a gate, rise from a time on; a cube slides onto these before, another one comes too
+   late. The motion is set at once, or (start < 0) by gate_rise. */
+static dem_world *gate_world(int impulses, double start, dem_body *b) {
+    dem_material m;
+    dem_shape cube;
+    dem_motion rise = DEM_MOTION;
+    dem_wall wall;
+    dem_world *w = floor_world(CUBE, BOXES, impulses, b);
+    dem_body_state s = scene_state(w, b[0]);
+    m.id = cube.id = 1;
+    CHECK_EQ(dem_world_dt_set(w, impulses ? DEM_R(1e-4) : DEM_R(4e-6)), DEM_OK);
+    b[1] = dem_body_add(w, m, cube, at(-5*R, 0.8*R, 0), dem_quat_make(1, 0, 0, 0));
+    s.position = at(-2*R, 0.8*R, 0);
+    s.velocity = at(1, 0, 0);
+    dem_body_set(w, b[0], &s);
+    scene_move(w, b[1], at(0.4, 0, 0), at(0, 0, 0));
+    rise.kind = DEM_MOTION_TRANSLATING;
+    rise.velocity = at(0, 0.2, 0);
+    rise.start = start;
+    rise.ramp = 0.002;
+    for (wall.id = 6; wall.id <= 10 && start >= 0; wall.id++) CHECK_EQ(dem_wall_motion_set(w, wall, &rise), DEM_OK);
+    return w;
+}
+static void gate_rise(dem_world *w) {
+    dem_motion rise = DEM_MOTION;
+    dem_wall wall;
+    rise.kind = DEM_MOTION_TRANSLATING;
+    rise.velocity = at(0, 0.2, 0);
+    rise.ramp = 0.002;
+    for (wall.id = 6; wall.id <= 10; wall.id++) CHECK_EQ(dem_wall_motion_set(w, wall, &rise), DEM_OK);
 }
 
 int main(int argc, char **argv) {
@@ -353,6 +438,96 @@ int main(int argc, char **argv) {
             CHECK_NEAR((double)demi_length(demi_sub(t.position, s.position))/R, 0, fine ? 1e-6 : 1e-3);
             dem_world_destroy(w);
         }
+    }
+    TEST("a gate that is to rise later is part of the floor until then, and moves from then on as one that is set then") {
+        int impulses, k;
+        for (impulses = 0; impulses < 2; impulses++) {
+            const int steps = impulses ? 100 : 2500;
+            dem_body a[2], b[2];
+            dem_world *later, *set = gate_world(impulses, -1, a);
+            CHECK_EQ(dem_world_step(set, steps), DEM_OK);
+            later = gate_world(impulses, dem_world_time_get(set), b);
+            gate_rise(set);
+            CHECK_EQ(dem_world_step(later, steps), DEM_OK);
+            CHECK_NEAR((double)scene_state(later, b[0]).velocity.x, 1, fine ? 1e-6 : 1e-3);
+            CHECK_EQ(dem_world_step(set, 2*steps), DEM_OK);
+            CHECK_EQ(dem_world_step(later, 2*steps), DEM_OK);
+            for (k = 0; k < 2; k++) {
+                const dem_body_state s = scene_state(set, a[k]), t = scene_state(later, b[k]);
+                /* impulses: the solver ends at 1e-6 of the speed, 15 R in this time */
+                CHECK_NEAR((double)demi_length(demi_sub(s.position, t.position))/R, 0, fine ? impulses ? 1.5e-5 : 1e-9 : 1e-2);
+                CHECK(k || (double)t.position.y > 1.8*R);       /* the gate bears the first cube */
+                CHECK(!k || (double)t.position.x < -0.7*R);     /* and stops the other one */
+            }
+            dem_world_destroy(set);
+            dem_world_destroy(later);
+        }
+    }
+    TEST("a step in which a motion begins can be repeated after memory ran out, and goes on with the same bits") {
+        int impulses;
+        for (impulses = 0; impulses < 2; impulses++) {
+            uint64_t end = 0;
+            long k, calls = 1;
+            for (k = 0; k <= calls; k++) {
+                scene_memory c;
+                dem_body b[2];
+                dem_world *w;
+                long before;
+                floor_memory = &c;
+                w = gate_world(impulses, 0.003, b);
+                CHECK_EQ(dem_world_run(w, 0.00285, 0, 0), DEM_OK);
+                CHECK_EQ(w->surface_count, 1);
+                before = c.calls;
+                c.refuse = k ? before + k : 0;
+                while (dem_world_step(w, 1) == DEM_ERROR_MEMORY || dem_world_time_get(w) < 0.0031) continue;
+                CHECK_EQ(w->surface_count, 2);
+                if (!k) calls = c.calls - before;
+                CHECK_EQ(dem_world_step(w, 20), DEM_OK);
+                if (!k) end = dem_world_hash_get(w);
+                CHECK_EQ(dem_world_hash_get(w), end);
+                dem_world_destroy(w);
+                CHECK_EQ(c.blocks, 0);
+            }
+            CHECK(calls > 20);
+        }
+        floor_memory = 0;
+    }
+    TEST("a restart before or after a motion begins goes on with the same bits") {
+        int impulses, k;
+        for (impulses = 0; impulses < 2; impulses++)
+            for (k = 0; k < 4; k++) {
+                dem_body b[2];
+                dem_world *w = gate_world(impulses, 0.003, b), *again = gate_world(impulses, 0.003, b);
+                CHECK_EQ(dem_world_run(w, k == 0 ? 0.001 : k == 1 ? 0.0029 : k == 2 ? 0.00296 : 0.004, 0, 0), DEM_OK);
+                CHECK_EQ(dem_checkpoint_write(w, "build/tmp/gate.dem"), DEM_OK);
+                CHECK_EQ(dem_checkpoint_read(again, "build/tmp/gate.dem"), DEM_OK);
+                CHECK_EQ(again->surface_count, w->surface_count);
+                CHECK_EQ(dem_world_step(w, 100), DEM_OK);
+                CHECK_EQ(dem_world_step(again, 100), DEM_OK);
+                CHECK_EQ(dem_world_hash_get(w), dem_world_hash_get(again));
+                dem_world_destroy(w);
+                dem_world_destroy(again);
+            }
+    }
+    TEST("a program that leads a wall at rest, step by step, does not make its surface or the lists again") {
+        dem_body b[2];
+        dem_world *w = gate_world(0, -1, b);
+        dem_motion rest = DEM_MOTION;
+        dem_wall gate;
+        uint64_t lists;
+        int i;
+        gate.id = 6;
+        rest.kind = DEM_MOTION_TRANSLATING;
+        CHECK_EQ(dem_world_step(w, 1), DEM_OK);
+        lists = dem_counters_get(w).rebuilds;
+        for (i = 0; i < 200; i++) {
+            CHECK_EQ(dem_wall_motion_set(w, gate, &rest), DEM_OK);
+            CHECK_EQ(dem_world_step(w, 1), DEM_OK);
+        }
+        CHECK_EQ(w->surface_count, 1);
+        CHECK(dem_counters_get(w).rebuilds < lists + 20);
+        CHECK_NEAR((double)scene_state(w, b[0]).velocity.x, 1, fine ? 1e-6 : 1e-3);
+        dem_world_destroy(w);
     }
     TEST("where closed boxes touch no face remains between them, however they are stacked") {
         static const struct { int floor, facets; } cases[] = {{BOXES, 84}, {BOXES_IN_MESH, 12}, {DOUBLED, 2}, {MESHES, 4}};
