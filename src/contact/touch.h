@@ -528,26 +528,16 @@ static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi
 static int demi_sieve_round(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
     const dem_real half = s->thickness/2, z = demi_clamp(x.z, -half, half);
     const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
-    const dem_real pitch = s->aperture + s->bar;
-    const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
-    dem_real best = -1, l;
+    dem_real best, l;
     dem_vec3 way, centre = x, to;
-    int32_t number = 0;
-    int k, side, count = 0;
+    double at[2] = {0, 0};
+    int32_t number;
+    int other = 0, side, count = 0;
     if (R > 0 && S > 0 && S > R - r)
         count = demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
     if (R > 0 && S > R) return count;           /* beyond the disc */
-    for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
-        const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
-        const double ix = floor((double)(x.x/pitch - shift) + 0.5);
-        const double iy = floor((double)(x.y/rows - shift) + 0.5);
-        const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
-        l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
-        if (best >= 0 && l >= best) continue;
-        best = l;
-        centre = c;
-        number = demi_sieve_number(ix, iy, 4*k);
-    }
+    best = demi_round_hole(s, x, &centre, at, &other);
+    number = demi_sieve_number(at[0], at[1], 4*other);
     if (best >= a*a) return demi_sieve_face(s, x, r, out);
     l = DEMI_SQRT(best);
     way = l > 0 ? demi_v((x.x - centre.x)/l, (x.y - centre.y)/l, 0) : demi_v(1, 0, 0);

@@ -437,7 +437,9 @@ typedef struct demi_wall {
                                       the same materials ignore them (pistons: >>servo) */
     uint64_t ignorers;             /* materials that ignore it, when surfaces were made */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
-    int open;                      /* 1: it may be a sheet: it has open edges or repeats */
+    int open;                      /* 1: it may be a sheet: facets with open edges or repeated; a
+                                      surface of revolution that is not closed; a plate without
+                                      thickness */
     dem_real span_lo[3], span_hi[3];   /* m, extent in a periodic world */
     int repeats[3];                /* 1: repeats along a periodic axis, since it is not longer than
                                       the period */

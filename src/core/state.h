@@ -436,7 +436,7 @@ struct dem_world {
     int repeating;                 /* 1: some wall repeats along a periodic axis */
     demi_crew crew;                /* >>team: threads in use */
     int facets_valid;              /* surfaces fit the walls and their motions */
-    int sheeted;                   /* 1: some surface of facets may be a sheet */
+    int sheeted;                   /* 1: some surface may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */
     int surface_count;             /* >>surfaces: joined surfaces */
     demi_wall *surfaces;

@@ -632,20 +632,17 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
     demi_probes_free(w, &p);
     demi_join_free(w, &j);
 }
-/* Checks a surface of revolution. It is closed if its profile begins and ends on the axis, or ends
-   where it began. */
+/* Checks a surface of revolution. */
 static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
     const demi_wall *s = &w->walls[wall];
     const int n = s->ring_count;
     const dem_real *r = s->ring_radius, *h = s->ring_height;
-    const int loop = !(r[0] > r[n - 1]) && !(r[0] < r[n - 1]) && !(h[0] > h[n - 1]) &&
-        !(h[0] < h[n - 1]);
     const double e = (double)s->extent;
     const dem_vec3 x = s->home.position;
     double box[6];
     demi_probes p;
     int i, k;
-    if (!loop && (r[0] > 0 || r[n - 1] > 0)) return;
+    if (s->open) return;
     box[0] = (double)x.x - e; box[1] = (double)x.y - e; box[2] = (double)x.z - e;
     for (k = 0; k < 3; k++) box[3 + k] = box[k] + 2*e;
     if (demi_probes_make(w, &p, s, box)) {

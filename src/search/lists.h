@@ -7,6 +7,8 @@
    dem_world.
    --------------------------------------------------------------------------------------------- */
 
+/* The gap, m, of a candidate that is only a sheet between bodies: larger than any. */
+#define DEMI_ONLY_SHEET DEM_R(1e30)
 /* Appends an element of a wall to the wall candidates of work group d. gap: m, between body and
    element; shift: m, from the body to its image at the wall; cell: of a tessellation. */
 static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
@@ -134,23 +136,26 @@ static void demi_wall_look_all(dem_world *w, demi_domain *domain, int d, int i, 
         }
     }
 }
-/* Lists the elements of all surfaces near body i that it does not ignore, unless it is fixed or a
-   ghost. */
+/* Lists the elements of all surfaces near body i that it does not ignore. A fixed body and a ghost
+   have no contacts with walls: their candidates are sheets only, with the gap DEMI_ONLY_SHEET. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
-    int j, n;
-    if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_is_ghost(w, i)) return;
+    const int touches = !(w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) &&
+        !demi_is_ghost(w, i);
+    int j, n, k = d*w->wall_stride + domain->walls;
+    if (!touches && !w->sheeted) return;
     for (j = 0; j < w->wall_count + w->surface_count; j++) {
         const demi_wall *wall = demi_surface_of(w, j);
         dem_vec3 shift;
         if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered ||
-            demi_surface_scale(w, j, i) != wall->scale ||
+            (!touches && !wall->open) || demi_surface_scale(w, j, i) != wall->scale ||
             (w->effects.ignoring && demi_ignores(w, w->bodies.material[i] - 1, wall->material)))
             continue;
         for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
                                     w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
             demi_wall_look_all(w, domain, d, i, j, shift);
     }
+    for (; !touches && k < d*w->wall_stride + domain->walls; k++) w->wall_gap[k] = DEMI_ONLY_SHEET;
 }
 /* Lists the wall candidates of a work group, body by body; those of a body and a wall are
    consecutive. */

@@ -417,18 +417,15 @@ static void demi_domain_adopt(dem_world *w, int d) {
 
 /* --- sheets: bodies on both sides of a surface without thickness do not touch --- */
 
-/* True if the segment from x to x + to, in the frame of a surface, crosses an element. *at: the
-   crossing point, as a fraction of the segment. */
-static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, dem_vec3 to,
-                                dem_real *at) {
+/* True if the segment from x to x + to, in the frame of a surface, crosses an element. */
+static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, dem_vec3 to) {
     const dem_real *plane = wall->planes + 4*element;
     const dem_vec3 n = demi_at(plane);
     const dem_real here = demi_dot(n, x) - plane[3], there = here + demi_dot(n, to);
     dem_vec3 c[3], p;
     int i, corners, sides = 0;
     if ((here > 0) == (there > 0)) return 0;
-    *at = here/(here - there);
-    p = demi_add(x, demi_scale(to, *at));
+    p = demi_add(x, demi_scale(to, here/(here - there)));
     corners = demi_wall_corners(wall, element, c);
     for (i = 0; i < corners; i++) {
         const dem_vec3 e = demi_sub(c[(i + 1)%corners], c[i]), d = demi_sub(p, c[i]);
@@ -437,46 +434,41 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     }
     return sides == corners;
 }
-/* True if a sheet among the candidates of a body crosses the line from its centre to another one,
-   at a point in the bounding spheres of both, extended by half a skin. to: m, to the image of the
-   other, whose radius is `radius`, m. */
-static int demi_sheet_before(const dem_world *w, int body, dem_vec3 to, dem_real radius) {
-    const dem_real more = demi_cover(w)/2, length = demi_length(to);
+/* True if a sheet among the candidates of `body` crosses the line from its centre to that of
+   `other`, which must not ignore it. to: m, to the image of the other. */
+static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 to) {
     const int first = w->walled[body] - 1, d = DEMI_MAX(first, 0)/w->wall_stride;
     const int end = first < 0 ? first : d*w->wall_stride + w->domains[d].walls;
-    const dem_real own = w->bodies.pos[4*body + 3] + more;
-    const dem_real gone = more + (dem_real)(w->margin.gone + w->margin.walls_gone);
-    dem_vec3 x = to, way = to;
+    const int material = w->bodies.material[other] - 1;
+    const dem_real gone = demi_cover(w)/2 + (dem_real)(w->margin.gone + w->margin.walls_gone);
+    dem_vec3 from = to, way = to, x;
     int k, had = -1;
     for (k = first; k < end && w->wall_body[k] == body; k++) {
         const demi_wall *wall = demi_surface_of(w, w->wall_id[k]);
-        dem_real at;
-        if (!wall->open || w->wall_gap[k] > gone) continue;
-        if (had < 0 || w->wall_id[k] != w->wall_id[had] || w->repeating || wall->step[0].x > 0) {
-            const dem_real *R = wall->pose.rotation;
-            x = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
-                demi_at(w->wall_shift + 3*(size_t)k)), wall->pose.position));
-            if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
+        const demi_wall *whole = wall->scale ? &w->walls[wall->lead] : wall;
+        const dem_real *shift = w->wall_shift + 3*(size_t)k, *R = wall->pose.rotation;
+        if (!wall->open || (w->wall_gap[k] > gone && w->wall_gap[k] < DEMI_ONLY_SHEET) ||
+            (w->effects.ignoring && demi_ignores(w, material, wall->material))) continue;
+        if (had < 0 || w->wall_id[k] != w->wall_id[had] ||
+            memcmp(shift, w->wall_shift + 3*(size_t)had, 3*sizeof *shift)) {
+            from = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
+                                                      demi_at(shift)), wall->pose.position));
             way = demi_unrotate(R, to);
+            if (!demi_faceted(whole) && demi_round_crossed(whole, from, way)) return 1;
             had = k;
         }
-        if (demi_element_crossed(wall, w->wall_element[k], x, way, &at) &&
-            at*length < own && (1 - at)*length < radius + more) return 1;
+        if (!demi_faceted(whole)) continue;
+        x = from;
+        if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
+        if (demi_element_crossed(wall, w->wall_element[k], x, way)) return 1;
     }
     return 0;
 }
-/* True for ghosts and fixed bodies: the search gives them no wall candidates. */
-static int demi_unlisted(const dem_world *w, int i) {
-    return demi_is_ghost(w, i) || !(w->bodies.inv_mass[i] > 0);
-}
-/* True if a sheet lies between bodies a and b. It is among the candidates of both, unless one is a
-   ghost or fixed, or has facets of its own (>>tessellate). to: m, from a to the image of b. */
+/* True if a sheet lies between bodies a and b: if the line between their centres crosses it. Where
+   the two are candidates of each other, the crossing is within half of demi_cover from the sphere
+   of one of them, and so the sheet is a candidate of that one. to: m, from a to the image of b. */
 static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
-    const int at_a = w->walled[a], at_b = w->walled[b], facets = w->effects.scales != 0;
-    if (at_a && (at_b || facets || demi_unlisted(w, b)) &&
-        demi_sheet_before(w, a, to, w->bodies.pos[4*b + 3])) return 1;
-    return at_b && (facets || (!at_a && demi_unlisted(w, a))) &&
-        demi_sheet_before(w, b, demi_scale(to, -1), w->bodies.pos[4*a + 3]);
+    return demi_sheet_before(w, a, b, to) || demi_sheet_before(w, b, a, demi_scale(to, -1));
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */

@@ -90,6 +90,78 @@ static dem_real demi_sieve_half(const dem_sieve_desc *s) {
     return (demi_sieve_wires(s) ? s->bar + s->lift : s->thickness)/2;
 }
 
+/* Returns the squared distance, m2, of (x.x, x.y) from the centre of the nearest round hole. at:
+   its numbers along both axes; *other: 1 if it is one of those between the rows. */
+static dem_real demi_round_hole(const dem_sieve_desc *s, dem_vec3 x, dem_vec3 *centre, double *at,
+                                int *other) {
+    const dem_real pitch = s->aperture + s->bar;
+    const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
+    dem_real best = -1, l;
+    int k;
+    for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
+        const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
+        const double ix = floor((double)(x.x/pitch - shift) + 0.5);
+        const double iy = floor((double)(x.y/rows - shift) + 0.5);
+        const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
+        l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
+        if (best >= 0 && l >= best) continue;
+        best = l;
+        *centre = c;
+        at[0] = ix;
+        at[1] = iy;
+        *other = k;
+    }
+    return best;
+}
+/* True if x, in the plane of a plate, is in a hole or beyond the disc. */
+static int demi_plate_open(const dem_sieve_desc *s, dem_vec3 x) {
+    const dem_real wide = s->kind == DEM_SIEVE_SLOTS ? s->length : s->aperture;
+    const dem_real a = wide + s->bar, b = s->aperture + s->bar;
+    dem_vec3 c;
+    double at[2];
+    int other;
+    if (s->radius > 0 && x.x*x.x + x.y*x.y > s->radius*s->radius) return 1;
+    if (s->kind == DEM_SIEVE_ROUND)
+        return demi_round_hole(s, x, &c, at, &other) < s->aperture*s->aperture/4;
+    c.x = x.x - (dem_real)floor((double)(x.x/a) + 0.5)*a;
+    c.y = x.y - (dem_real)floor((double)(x.y/b) + 0.5)*b;
+    return (!(wide > 0) || DEMI_ABS(c.x) < wide/2) && DEMI_ABS(c.y) < s->aperture/2;
+}
+/* True if the segment from x to x + to crosses a surface of revolution. With radius r and height z,
+   the piece from (R, H) to (R + e, H + f) is on the cone f r = e (z - H) + f R. Squared, that is a
+   quadratic equation for the fraction of the segment; it includes the cone's other half. */
+static int demi_revolved_crossed(const demi_wall *wall, dem_vec3 x, dem_vec3 to) {
+    const double A = (double)(to.x*to.x + to.y*to.y), B = (double)(x.x*to.x + x.y*to.y);
+    const double C = (double)(x.x*x.x + x.y*x.y);
+    int i, k;
+    for (k = 0; k + 1 < wall->ring_count; k++) {
+        const double R = (double)wall->ring_radius[k], H = (double)wall->ring_height[k];
+        const double e = (double)wall->ring_radius[k + 1] - R;
+        const double f = (double)wall->ring_height[k + 1] - H, size = e*e + f*f;
+        const double u = e*((double)x.z - H) + f*R, v = e*(double)to.z;
+        const double a = f*f*A - v*v, b = f*f*B - u*v, c = f*f*C - u*u, root = b*b - a*c;
+        double q, t, r, along;
+        if (root < -1e-12*b*b) continue;        /* a flat piece has a double root */
+        q = -b - (b < 0 ? -1 : 1)*sqrt(DEMI_MAX(root, 0));
+        for (i = 0; i < 2; i++) {
+            t = i ? c/q : q/a;
+            if (!(t >= 0 && t <= 1)) continue;
+            r = sqrt(DEMI_MAX(C + t*(2*B + t*A), 0));
+            along = (r - R)*e + ((double)x.z + t*(double)to.z - H)*f;
+            if (along > -1e-6*size && along < (1 + 1e-6)*size &&
+                f*(u + v*t) > -1e-9*size*(r + R)) return 1;
+        }
+    }
+    return 0;
+}
+/* True if the segment from x to x + to, in the frame of a wall, crosses it: a surface of revolution
+   or a plate without thickness. */
+static int demi_round_crossed(const demi_wall *wall, dem_vec3 x, dem_vec3 to) {
+    if (wall->kind == DEMI_WALL_REVOLVED) return demi_revolved_crossed(wall, x, to);
+    if ((x.z > 0) == (x.z + to.z > 0)) return 0;
+    return !demi_plate_open(&wall->sieve, demi_sub(x, demi_scale(to, x.z/to.z)));
+}
+
 /* --- one sphere against one element, in the frame of the wall: sets normal (grain -> wall) and
    point, and returns the overlap, m (negative: apart). The search for candidates uses these too.
    --- */

@@ -369,7 +369,9 @@ static int demi_tessellation_make(dem_world *w, int wall, int scale) {
     if (ok) memcpy(s->vertices, f.x, (size_t)f.points*3*sizeof(dem_real));
     if (ok) memcpy(s->corners, f.corner, (size_t)(f.facets*f.per)*sizeof(int32_t));
     demi_form_free(&f);
-    return ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
+    ok = ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
+    s->open = w->walls[wall].open;
+    return ok;
 }
 /* Makes the tessellations for the scales in a set of bits. Returns 0 if memory ran out. */
 static int demi_tessellations_make(dem_world *w, uint64_t scales) {

@@ -444,6 +444,8 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
         return demi_no_wall;
     }
     wall.ring_count = count;
+    wall.open = (radii[0] > 0 || radii[count - 1] > 0) &&
+        demi_size(demi_v(radii[0] - radii[count - 1], heights[0] - heights[count - 1], 0)) > 0;
     wall.element_count = 1;
     wall.home.position = wall.motion.point = point;
     wall.motion.axis = demi_unit(axis);
@@ -671,6 +673,7 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     R[2] = n.x; R[5] = n.y; R[8] = n.z;
     t = demi_cross(n, t);
     R[1] = t.x; R[4] = t.y; R[7] = t.z;
+    wall.open = !demi_sieve_wires(d) && !(d->thickness > 0);
     wall.element_count = 1;
     wall.radius = d->radius;
     wall.home.position = wall.motion.point = d->point;
