@@ -12,10 +12,13 @@
    contains the force that a homogeneous acceleration of the flow needs. Two bodies whose centres
    are `branch` apart, from a to b, have the relative velocity c_a - c_b - L branch. Neither depends
    on the place, so no face of the cell is special, and c does not change if a body is wrapped.
-   Every step moves all positions by L (x - mid) dt and the sides by the same map, so an image stays
-   an image exactly.
+   Every step moves all positions by L (x - mid) dt + L L (x - mid) dt^2/2 and the sides by the same
+   map, so an image stays an image exactly. In the first term x is the position in the middle of the
+   drift. So the path is of second order in dt if the integrator is. The c of the Euler schemes
+   belongs to one end of the step, and so does x then.
    Energy. The kinetic energy is that of c. The cell supplies the power
        sum over contacts of force on a . L branch - sum over bodies of m c . L c.
+   The work of a step is dt times the mean of the powers at its two ends.
    --------------------------------------------------------------------------------------------- */
 /* True if images across the y faces are displaced along x. */
 static int demi_cell_slid(const dem_world *w) { return w->cell.offset < 0 || w->cell.offset > 0; }
@@ -89,19 +92,30 @@ static void demi_cell_stiffen(const dem_world *w, double *sum, dem_vec3 n, dem_v
         sum[DEMI_CELL_DAMP + i] += share*c*x[i]*x[i];
     }
 }
+/* Returns L dt + L L dt^2/2: by[k] on the diagonal; the return value is in row 0, column 1. */
+static double demi_cell_map(const dem_world *w, double *by) {
+    const demi_strained *c = &w->cell;
+    const double dt = (double)w->clock.dt;
+    int k;
+    for (k = 0; k < 3; k++) by[k] = c->rate[k]*dt*(1 + c->rate[k]*dt/2);
+    return c->shear*dt*(1 + (c->rate[0] + c->rate[1])*dt/2);
+}
 /* Moves the bodies begin .. end - 1 with the flow, for one step. */
 static void demi_cell_carry(dem_world *w, int begin, int end) {
     const demi_strained *c = &w->cell;
-    const double dt = (double)w->clock.dt;
+    const dem_real dt = w->clock.dt, back = w->desc.integrator == DEM_INTEGRATOR_FORWARD_EULER ? dt
+        : w->desc.integrator == DEM_INTEGRATOR_SYMPLECTIC_EULER ? 0 : dt/2;
+    double by[3], shear = demi_cell_map(w, by);
     int i, k;
     for (i = begin; i < end; i++) {
-        dem_real *x = w->bodies.pos + 4*i;
+        dem_real *x = w->bodies.pos + 4*i, flow[3];
         const double to[3] = {(double)x[0] - c->mid[0], (double)x[1] - c->mid[1],
                               (double)x[2] - c->mid[2]};
+        demi_put(flow, demi_scale(demi_cell_flow(w, demi_at(w->bodies.half_vel + 4*i)), back*dt));
         for (k = 0; k < 3; k++) {
-            const double by = (c->rate[k]*to[k] + (k ? 0 : c->shear*to[1]))*dt;
             const dem_real was = x[k];
-            x[k] = (dem_real)((double)x[k] + by);
+            x[k] = (dem_real)((double)x[k] + by[k]*to[k] + (k ? 0 : shear*to[1]) -
+                              (double)flow[k]);
             if (w->bodies.backward) w->bodies.last_pos[4*i + k] += x[k] - was;
         }
     }
@@ -121,20 +135,19 @@ static void demi_cell_drag(dem_world *w, demi_domain *domain) {
         w->bodies.force[4*i + 2] += drag.z;
     }
 }
-/* Returns the power of a velocity gradient in the contacts and bodies of all work groups, W. */
-static double demi_cell_power(const dem_world *w, const double *rate, double shear) {
-    double power = 0;
+/* Adds half the work of the cell in a step to the ledger, at its beginning and at its end. drag:
+   strain rates at which demi_cell_drag was computed. */
+static void demi_cell_book(dem_world *w, const double *drag) {
+    const demi_strained *c = &w->cell;
+    double work, power = 0;
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const double *sum = w->domains[d].cell, *flux = sum + DEMI_CELL_FLUX;
-        for (k = 0; k < 3; k++) power += rate[k]*(sum[DEMI_CELL_VIRIAL + 4*k] - flux[k]);
-        power += shear*(sum[DEMI_CELL_VIRIAL + 1] - flux[3]);
+        for (k = 0; k < 3; k++)
+            power += c->rate[k]*sum[DEMI_CELL_VIRIAL + 4*k] - drag[k]*flux[k];
+        power += c->shear*(sum[DEMI_CELL_VIRIAL + 1] - flux[3]);
     }
-    return power;
-}
-/* Adds the work of the cell in this step to the ledger. */
-static void demi_cell_book(dem_world *w) {
-    const double work = demi_cell_power(w, w->cell.rate, w->cell.shear)*(double)w->clock.dt;
+    work = power*(double)w->clock.dt/2;
     w->booked.energy[DEMI_E_CELL] += work;
     w->booked.throughput += fabs(work);
 }

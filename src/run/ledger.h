@@ -58,7 +58,7 @@ static void demi_ledger_book(dem_world *w) {
                                                            ? (double)w->clock.dt : 0);
     w->booked.energy[DEMI_E_WALLS] += walls;
     w->booked.throughput += fabs(walls);
-    if (w->cell.on && w->stage.forces_valid) demi_cell_book(w);
+    if (w->cell.on && w->stage.forces_valid) demi_cell_book(w, w->cell.rate);
 }
 DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     dem_ledger l;

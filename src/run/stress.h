@@ -59,26 +59,11 @@ static void demi_cell_look(dem_world *w) {
         }
     }
 }
-/* Changes the rates. The work of a change is that of half a step, since the last step was booked
-   with the rates before. */
-static void demi_cell_turn(dem_world *w, const double *rate, double shear) {
-    demi_strained *c = &w->cell;
-    double change[3];
-    int k;
-    for (k = 0; k < 3; k++) {
-        change[k] = rate[k] - c->rate[k];
-        c->rate[k] = rate[k];
-    }
-    if (w->desc.ledger)
-        w->booked.energy[DEMI_E_CELL] +=
-            demi_cell_power(w, change, shear - c->shear)*(double)w->clock.dt/2;
-    c->shear = shear;
-}
 /* Chooses the rates for the coming step along the axes that are led to a stress. */
 static dem_result demi_cell_lead(dem_world *w) {
     demi_strained *c = &w->cell;
     dem_real stress[3], most[3];
-    double rate[3], norm = fabs(c->shear), dt = (double)w->clock.dt;
+    double rate[3], drag[3], norm = fabs(c->shear), dt = (double)w->clock.dt;
     int k;
     if (demi_cell_refuse(w, "dem_world_step")) return DEM_ERROR_ARGUMENT;
     demi_put(stress, c->desc.stress);
@@ -89,28 +74,30 @@ static dem_result demi_cell_lead(dem_world *w) {
             : c->rate[k];
         norm = DEMI_MAX(norm, fabs(rate[k]) + fabs(c->shear));
     }
-    demi_cell_turn(w, rate, c->shear);
+    memcpy(drag, c->rate, sizeof drag);
+    memcpy(c->rate, rate, sizeof rate);
     if (!(norm*dt <= 0.01))
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: the cell is deformed "
                          "at %g 1/s, which strains it by %g in a step of %g s, must be at most "
                          "0.01; use lower rates (rate, shear, rate_most)",
                          (unsigned long long)w->clock.steps, norm, norm*dt, dt);
-    c->squeeze = norm*dt*(2*(double)w->effects.radius_max + (double)demi_cover(w));
+    if (w->desc.ledger) demi_cell_book(w, drag);
+    c->squeeze = norm*dt*(1 + norm*dt/2)*(2*(double)w->effects.radius_max + (double)demi_cover(w));
     return DEM_OK;
 }
 /* Moves the sides of the cell for one step, and all images. */
 static void demi_cell_move(dem_world *w) {
     demi_strained *c = &w->cell;
-    const double dt = (double)w->clock.dt;
+    double by[3], shear = demi_cell_map(w, by);
     dem_real lo[3], hi[3];
     int k;
     demi_put(lo, w->desc.domain.lo);
     demi_put(hi, w->desc.domain.hi);
-    c->offset += (c->rate[0]*c->offset + c->shear*c->side[1])*dt;
-    c->sheared += c->shear*dt;
+    c->offset += by[0]*c->offset + shear*c->side[1];
+    c->sheared += c->shear*(double)w->clock.dt;
     for (k = 0; k < 3; k++) {
-        c->side[k] += c->rate[k]*c->side[k]*dt;
-        c->strain[k] += log1p(c->rate[k]*dt);
+        c->side[k] += by[k]*c->side[k];
+        c->strain[k] += log1p(by[k]);
         if (w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC) continue;
         lo[k] = (dem_real)(c->mid[k] - c->side[k]/2);
         hi[k] = (dem_real)(c->mid[k] + c->side[k]/2);
@@ -150,7 +137,7 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
     demi_strained *c;
     dem_cell_desc before;
     dem_real rate[3], most[3];
-    double lo[3], hi[3], to[3];
+    double lo[3], hi[3];
     int k, moves = 0;
     if (demi_null(w, __func__, desc, "desc") ||
         demi_rows_check(w, __func__, demi_cell_rows, desc, "", "start from DEM_CELL_DESC and set "
@@ -175,8 +162,8 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
     demi_finish(w);                             /* the open half kick belongs to the old rates */
     demi_put(rate, desc->rate);
     demi_put(most, desc->rate_most);
-    for (k = 0; k < 3; k++) to[k] = most[k] > 0 ? c->rate[k] : (double)rate[k];
-    demi_cell_turn(w, to, (double)desc->shear);
+    for (k = 0; k < 3; k++) if (!(most[k] > 0)) c->rate[k] = (double)rate[k];
+    c->shear = (double)desc->shear;
     if (!c->on) c->squeeze = 0;
     demi_scene_changed(w);
     return DEM_OK;
