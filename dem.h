@@ -2378,7 +2378,8 @@ DEM_API dem_wall dem_wall_profile_add(dem_world *world, dem_material material,
                                  const dem_profile *profile,
                                  dem_edge_rule rule);
 /* Adds a triangle mesh. Both sides repel. Meshes that do not move relative to each other act as one
-   surface, however it is divided; so do profiles (>>surfaces). */
+   surface, however it is divided; so do profiles (>>surfaces). A wall is at rest until its motion
+   begins. */
 DEM_API dem_wall dem_wall_mesh_add(dem_world *world, dem_material material, const dem_mesh *mesh);
 /* Adds a wall of spheres of one radius (m) at positions (count x 3, m), as in [MIL]. All forces are
    multiplied by share (0 < share <= 1), because overlapping spheres represent one surface. */
@@ -4647,7 +4648,9 @@ typedef struct demi_wall {
                                       the same materials ignore them (pistons: >>servo) */
     uint64_t ignorers;             /* materials that ignore it, when surfaces were made */
     int lone, wraps;               /* 1: no facet has neighbours in periodic images; some have */
-    int open;                      /* 1: it may be a sheet: it has open edges or repeats */
+    int open;                      /* 1: it may be a sheet: facets with open edges or repeated; a
+                                      surface of revolution that is not closed; a plate without
+                                      thickness */
     dem_real span_lo[3], span_hi[3];   /* m, extent in a periodic world */
     int repeats[3];                /* 1: repeats along a periodic axis, since it is not longer than
                                       the period */
@@ -4660,6 +4663,7 @@ typedef struct demi_wall {
     dem_vec3 glide;                /* m/s, velocity of its surface, in its frame; >>steering sets
                                       it, >>belts uses it */
     int glides;                    /* 1: that is not 0 */
+    int idle;                      /* 1: its motion has not begun and leaves it where it was set */
     dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */
     int symmetric;                 /* 1: its motion maps the surface onto itself, so it never makes
                                       a rebuild necessary */
@@ -5207,7 +5211,7 @@ struct dem_world {
     int repeating;                 /* 1: some wall repeats along a periodic axis */
     demi_crew crew;                /* >>team: threads in use */
     int facets_valid;              /* surfaces fit the walls and their motions */
-    int sheeted;                   /* 1: some surface of facets may be a sheet */
+    int sheeted;                   /* 1: some surface may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */
     int surface_count;             /* >>surfaces: joined surfaces */
     demi_wall *surfaces;
@@ -10588,10 +10592,13 @@ static void demi_finish(dem_world *w) {
    contains the force that a homogeneous acceleration of the flow needs. Two bodies whose centres
    are `branch` apart, from a to b, have the relative velocity c_a - c_b - L branch. Neither depends
    on the place, so no face of the cell is special, and c does not change if a body is wrapped.
-   Every step moves all positions by L (x - mid) dt and the sides by the same map, so an image stays
-   an image exactly.
+   Every step moves all positions by L (x - mid) dt + L L (x - mid) dt^2/2 and the sides by the same
+   map, so an image stays an image exactly. In the first term x is the position in the middle of the
+   drift. So the path is of second order in dt if the integrator is. The c of the Euler schemes
+   belongs to one end of the step, and so does x then.
    Energy. The kinetic energy is that of c. The cell supplies the power
        sum over contacts of force on a . L branch - sum over bodies of m c . L c.
+   The work of a step is dt times the mean of the powers at its two ends.
    --------------------------------------------------------------------------------------------- */
 /* True if images across the y faces are displaced along x. */
 static int demi_cell_slid(const dem_world *w) { return w->cell.offset < 0 || w->cell.offset > 0; }
@@ -10665,19 +10672,30 @@ static void demi_cell_stiffen(const dem_world *w, double *sum, dem_vec3 n, dem_v
         sum[DEMI_CELL_DAMP + i] += share*c*x[i]*x[i];
     }
 }
+/* Returns L dt + L L dt^2/2: by[k] on the diagonal; the return value is in row 0, column 1. */
+static double demi_cell_map(const dem_world *w, double *by) {
+    const demi_strained *c = &w->cell;
+    const double dt = (double)w->clock.dt;
+    int k;
+    for (k = 0; k < 3; k++) by[k] = c->rate[k]*dt*(1 + c->rate[k]*dt/2);
+    return c->shear*dt*(1 + (c->rate[0] + c->rate[1])*dt/2);
+}
 /* Moves the bodies begin .. end - 1 with the flow, for one step. */
 static void demi_cell_carry(dem_world *w, int begin, int end) {
     const demi_strained *c = &w->cell;
-    const double dt = (double)w->clock.dt;
+    const dem_real dt = w->clock.dt, back = w->desc.integrator == DEM_INTEGRATOR_FORWARD_EULER ? dt
+        : w->desc.integrator == DEM_INTEGRATOR_SYMPLECTIC_EULER ? 0 : dt/2;
+    double by[3], shear = demi_cell_map(w, by);
     int i, k;
     for (i = begin; i < end; i++) {
-        dem_real *x = w->bodies.pos + 4*i;
+        dem_real *x = w->bodies.pos + 4*i, flow[3];
         const double to[3] = {(double)x[0] - c->mid[0], (double)x[1] - c->mid[1],
                               (double)x[2] - c->mid[2]};
+        demi_put(flow, demi_scale(demi_cell_flow(w, demi_at(w->bodies.half_vel + 4*i)), back*dt));
         for (k = 0; k < 3; k++) {
-            const double by = (c->rate[k]*to[k] + (k ? 0 : c->shear*to[1]))*dt;
             const dem_real was = x[k];
-            x[k] = (dem_real)((double)x[k] + by);
+            x[k] = (dem_real)((double)x[k] + by[k]*to[k] + (k ? 0 : shear*to[1]) -
+                              (double)flow[k]);
             if (w->bodies.backward) w->bodies.last_pos[4*i + k] += x[k] - was;
         }
     }
@@ -10697,20 +10715,19 @@ static void demi_cell_drag(dem_world *w, demi_domain *domain) {
         w->bodies.force[4*i + 2] += drag.z;
     }
 }
-/* Returns the power of a velocity gradient in the contacts and bodies of all work groups, W. */
-static double demi_cell_power(const dem_world *w, const double *rate, double shear) {
-    double power = 0;
+/* Adds half the work of the cell in a step to the ledger, at its beginning and at its end. drag:
+   strain rates at which demi_cell_drag was computed. */
+static void demi_cell_book(dem_world *w, const double *drag) {
+    const demi_strained *c = &w->cell;
+    double work, power = 0;
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const double *sum = w->domains[d].cell, *flux = sum + DEMI_CELL_FLUX;
-        for (k = 0; k < 3; k++) power += rate[k]*(sum[DEMI_CELL_VIRIAL + 4*k] - flux[k]);
-        power += shear*(sum[DEMI_CELL_VIRIAL + 1] - flux[3]);
+        for (k = 0; k < 3; k++)
+            power += c->rate[k]*sum[DEMI_CELL_VIRIAL + 4*k] - drag[k]*flux[k];
+        power += c->shear*(sum[DEMI_CELL_VIRIAL + 1] - flux[3]);
     }
-    return power;
-}
-/* Adds the work of the cell in this step to the ledger. */
-static void demi_cell_book(dem_world *w) {
-    const double work = demi_cell_power(w, w->cell.rate, w->cell.shear)*(double)w->clock.dt;
+    work = power*(double)w->clock.dt/2;
     w->booked.energy[DEMI_E_CELL] += work;
     w->booked.throughput += fabs(work);
 }
@@ -11353,7 +11370,7 @@ static void demi_wall_pose_at(const dem_world *world, const demi_wall *wall, dou
     case DEM_MOTION_ROTATING: {
         const dem_vec3 axis = demi_unit(m->axis);
         double turn[9];
-        if (t < 0) break;
+        if (t < 0 || !(DEMI_ABS(m->speed) > 0)) break;
         gone = demi_ramp(t, m->ramp, &part);
         demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
                       fmod((double)m->speed*gone, 2*DEMI_PI));
@@ -11496,35 +11513,94 @@ static uint64_t demi_digest_table(const void *item) {
     }
     return h;
 }
-/* True if two walls are at rest relative to each other: both fixed, or moved alike. */
-static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
-    const dem_motion *m = &a->motion, *o = &b->motion;
-    if (a == b) return 1;
-    if (m->kind != o->kind || m->kind == DEM_MOTION_USER || m->kind == DEM_MOTION_TABLE) return 0;
-    if (m->kind == DEM_MOTION_FIXED) return 1;
-    if (memcmp(&m->start, &o->start, sizeof m->start) ||
-        memcmp(&m->ramp, &o->ramp, sizeof m->ramp) ||
-        memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
-    if (m->kind == DEM_MOTION_SERVO)
-        return !memcmp(&m->load, &o->load, sizeof m->load) &&
-            !memcmp(&m->area, &o->area, sizeof m->area) &&
-            !memcmp(&m->travel, &o->travel, sizeof m->travel) &&
-            m->table_repeats == o->table_repeats && demi_digest_table(a) == demi_digest_table(b);
-    return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
-        ? !memcmp(&m->point, &o->point, sizeof m->point) &&
-          !memcmp(&m->axis, &o->axis, sizeof m->axis) &&
-          !memcmp(&m->speed, &o->speed, sizeof m->speed)
-        : !memcmp(&m->amplitude, &o->amplitude, sizeof m->amplitude) &&
-          !memcmp(&m->frequency, &o->frequency, sizeof m->frequency) &&
-          !memcmp(&m->phase, &o->phase, sizeof m->phase);
+/* Bound on the rounding error of a difference of vectors of such a length. */
+static dem_real demi_rounding(dem_real length) {
+    return 8*(DEMI_SINGLE ? (dem_real)FLT_EPSILON : (dem_real)DBL_EPSILON)*length;
 }
-
-/* True if no other wall moves with this one. */
-static int demi_wall_alone(const dem_world *w, const demi_wall *wall, int place) {
+/* True if two vectors are equal, but for rounding errors. */
+static int demi_vectors_alike(dem_vec3 a, dem_vec3 b) {
+    return demi_length(demi_sub(a, b)) <= demi_rounding(demi_length(a));
+}
+static int demi_equal(double a, double b) { return !(a < b) && !(a > b); }
+/* True if a motion may rotate its wall. */
+static int demi_motion_turns(const dem_motion *m) {
+    int k, turns = m->kind == DEM_MOTION_ROTATING;
+    for (k = 0; k < m->table_count && m->kind == DEM_MOTION_TABLE; k++)
+        turns |= fabs(m->table[k].rotation.w) < 1;
+    return turns;
+}
+/* True if the tables of two walls have the same rows and, if a row rotates the walls, the same
+   point. */
+static int demi_tables_alike(const demi_wall *a, const demi_wall *b) {
+    const dem_motion *m = &a->motion, *o = &b->motion;
+    if (m->table_count != o->table_count || m->table_repeats != o->table_repeats) return 0;
+    return (!demi_motion_turns(m) || demi_vectors_alike(m->point, o->point)) &&
+        demi_digest_table(a) == demi_digest_table(b);
+}
+/* True if two walls are moved alike, so that they are at rest relative to each other at all times:
+   both are fixed, or have equal motions that start together. */
+static int demi_walls_alike(const demi_wall *a, const demi_wall *b) {
+    const dem_motion *m = &a->motion, *o = &b->motion;
+    const dem_vec3 turns = demi_scale(demi_unit(m->axis), m->speed);
+    if (a == b) return 1;
+    if (m->kind != o->kind || m->kind == DEM_MOTION_USER) return 0;
+    if (m->kind == DEM_MOTION_FIXED) return 1;
+    if (!demi_equal(m->start, o->start)) return 0;
+    if (m->kind == DEM_MOTION_TABLE) return demi_tables_alike(a, b);
+    if (!demi_equal(m->ramp, o->ramp)) return 0;
+    switch (m->kind) {
+    case DEM_MOTION_ROTATING:
+        return demi_vectors_alike(turns, demi_scale(demi_unit(o->axis), o->speed)) &&
+            demi_length(demi_cross(demi_unit(m->axis), demi_sub(m->point, o->point))) <=
+            demi_rounding(demi_length(m->point) + demi_length(o->point));
+    case DEM_MOTION_OSCILLATING:
+        return demi_vectors_alike(demi_scale(demi_unit(m->velocity), m->amplitude),
+                                  demi_scale(demi_unit(o->velocity), o->amplitude)) &&
+            demi_equal((double)m->frequency, (double)o->frequency) &&
+            demi_equal((double)m->phase, (double)o->phase);
+    case DEM_MOTION_SERVO:
+        if (!demi_equal((double)m->load, (double)o->load) ||
+            !demi_equal((double)m->area, (double)o->area) ||
+            !demi_equal((double)m->travel, (double)o->travel) || !demi_tables_alike(a, b))
+            return 0;
+    /* fall through */
+    default: return demi_vectors_alike(m->velocity, o->velocity);
+    }
+}
+/* True if a wall has a motion that has not begun at a time, s, and until then leaves the wall where
+   it was set. */
+static int demi_wall_waits(const demi_wall *wall, double time) {
+    const dem_motion *m = &wall->motion;
+    if (m->kind == DEM_MOTION_FIXED || m->kind == DEM_MOTION_USER || !(time < m->start)) return 0;
+    return m->kind != DEM_MOTION_TABLE || (!(demi_size(m->table->position) > 0) &&
+                                           !(fabs(m->table->rotation.w) < 1));
+}
+/* True if a wall is where it was when its motion was set, and does not move: it is fixed, its
+   motion has not begun (wall->idle), or its speed is 0. */
+static int demi_wall_rests(const demi_wall *wall) {
+    const dem_motion *m = &wall->motion;
+    switch (m->kind) {
+    case DEM_MOTION_FIXED: return 1;
+    case DEM_MOTION_TRANSLATING: return wall->idle || !(demi_size(m->velocity) > 0);
+    case DEM_MOTION_ROTATING: return wall->idle || !(DEMI_ABS(m->speed) > 0);
+    case DEM_MOTION_OSCILLATING: return wall->idle || !(DEMI_ABS(m->amplitude) > 0);
+    default: return wall->idle;
+    }
+}
+/* True if two walls are at rest relative to each other. */
+static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
+    return (demi_wall_rests(a) && demi_wall_rests(b)) || demi_walls_alike(a, b);
+}
+/* True if wall `place` is at rest relative to the same other walls when it becomes `next`, and the
+   surface that it is part of remains as it is. */
+static int demi_wall_remains(const dem_world *w, const demi_wall *next, int place) {
+    const demi_wall *wall = &w->walls[place];
+    const int rests = demi_wall_rests(wall) && demi_wall_rests(next);
     int i;
     for (i = 0; i < w->wall_count; i++)
         if (i != place && w->walls[i].kind != DEMI_WALL_NONE &&
-            demi_walls_together(&w->walls[i], wall)) return 0;
+            (demi_walls_together(&w->walls[i], wall) ? !rests
+             : demi_walls_together(&w->walls[i], next))) return 0;
     return 1;
 }
 /* Called when a wall is added, removed or moved otherwise. Surfaces are made again (>>surfaces),
@@ -11830,6 +11906,8 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
         return demi_no_wall;
     }
     wall.ring_count = count;
+    wall.open = (radii[0] > 0 || radii[count - 1] > 0) &&
+        demi_size(demi_v(radii[0] - radii[count - 1], heights[0] - heights[count - 1], 0)) > 0;
     wall.element_count = 1;
     wall.home.position = wall.motion.point = point;
     wall.motion.axis = demi_unit(axis);
@@ -12057,6 +12135,7 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     R[2] = n.x; R[5] = n.y; R[8] = n.z;
     t = demi_cross(n, t);
     R[1] = t.x; R[4] = t.y; R[7] = t.z;
+    wall.open = !demi_sieve_wires(d) && !(d->thickness > 0);
     wall.element_count = 1;
     wall.radius = d->radius;
     wall.home.position = wall.motion.point = d->point;
@@ -12158,6 +12237,7 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     memset(&laid.servo, 0, sizeof laid.servo);
     laid.servo.time = laid.motion.start;
     laid.symmetric = demi_wall_symmetric(&laid);
+    laid.idle = demi_wall_waits(&laid, w->clock.time);
     demi_wall_pose_at(w, &laid, w->clock.time, &laid.pose);
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {
@@ -12409,6 +12489,7 @@ static int demi_wall_keeps(const dem_world *w, const demi_wall *wall, int axis) 
         ? &w->walls[wall->lead].motion : &wall->motion;
     const dem_vec3 e = demi_v(axis == 0, axis == 1, axis == 2);
     int k, keeps = wall->repeats[axis];
+    if (demi_wall_rests(wall)) return keeps;
     if (m->kind == DEM_MOTION_ROTATING)
         keeps = keeps && demi_length(demi_cross(demi_unit(m->axis), e)) <= DEM_R(1e-6);
     for (k = 0; k < m->table_count && demi_tabled(m); k++) {
@@ -13415,8 +13496,9 @@ static void demi_form_begin(demi_form *f, dem_world *w, const demi_wall *wall, d
    (wall->joined), which has the form of a wall. Its number as a candidate (>>lists) is wall_count
    or more, and `whose` tells which wall a face, edge or corner belongs to: contacts act on that
    wall and use its material. Surfaces are made again when a wall is added, removed or moved
-   otherwise. Tessellations of curved walls (>>tessellate) follow the joined surfaces: one for each
-   scale of bodies that need it, which is the power of two below their radius.
+   otherwise, and when a motion begins. Tessellations of curved walls (>>tessellate) follow the
+   joined surfaces: one for each scale of bodies that need it, which is the power of two below their
+   radius.
    This part owns w->surfaces and the weights of facets.
    --------------------------------------------------------------------------------------------- */
 /* The surface with this number: a wall, or a joined surface. */
@@ -13774,7 +13856,9 @@ static int demi_tessellation_make(dem_world *w, int wall, int scale) {
     if (ok) memcpy(s->vertices, f.x, (size_t)f.points*3*sizeof(dem_real));
     if (ok) memcpy(s->corners, f.corner, (size_t)(f.facets*f.per)*sizeof(int32_t));
     demi_form_free(&f);
-    return ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
+    ok = ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
+    s->open = w->walls[wall].open;
+    return ok;
 }
 /* Makes the tessellations for the scales in a set of bits. Returns 0 if memory ran out. */
 static int demi_tessellations_make(dem_world *w, uint64_t scales) {
@@ -13865,6 +13949,35 @@ static int demi_surfaces_make(dem_world *w) {
     demi_walls_repeat(w);                       /* now of the joined ones, too */
     w->facets_valid = ok;
     return ok;
+}
+
+/* Returns what changes when the motion of wall `place` begins: 2 surfaces, 1 only groups of walls,
+   0 nothing. Relative to walls that are moved alike it remains at rest. */
+static int demi_wall_parts(const dem_world *w, int place) {
+    const demi_wall *wall = &w->walls[place], *other = w->walls;
+    int parts = w->repeating && demi_motion_turns(&wall->motion) ? 2 : 0;
+    for (; other < w->walls + w->wall_count; other++)
+        if (other->kind != DEMI_WALL_NONE && demi_walls_together(wall, other) &&
+            !demi_walls_alike(wall, other))
+            parts |= demi_faceted(wall) || demi_faceted(other) || wall->covered || other->covered
+                ? 2 : 1;
+    return parts;
+}
+/* Gives another slab the surfaces of the first one of its process, and what these say about the
+   walls. Returns 0 if memory ran out. */
+static int demi_surfaces_share(dem_world *to, const dem_world *first) {
+    int i;
+    for (i = 0; i < to->wall_count; i++) {
+        const dem_wall_loads loads = to->walls[i].loads;
+        to->walls[i] = first->walls[i];
+        to->walls[i].loads = loads;
+        to->walls[i].motion.kind = DEM_MOTION_FIXED;
+    }
+    if (!DEMI_COPY(to, to->surfaces, first->surfaces, first->surface_count)) return 0;
+    to->surface_count = first->surface_count;
+    to->sheeted = first->sheeted;
+    to->effects.scales = first->effects.scales;
+    return to->facets_valid = 1;
 }
 
 /* Here, because it changes which walls form a surface if the materials ignored each other before
@@ -13980,6 +14093,78 @@ DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
 /* Half the thickness of a sieve, m. */
 static dem_real demi_sieve_half(const dem_sieve_desc *s) {
     return (demi_sieve_wires(s) ? s->bar + s->lift : s->thickness)/2;
+}
+
+/* Returns the squared distance, m2, of (x.x, x.y) from the centre of the nearest round hole. at:
+   its numbers along both axes; *other: 1 if it is one of those between the rows. */
+static dem_real demi_round_hole(const dem_sieve_desc *s, dem_vec3 x, dem_vec3 *centre, double *at,
+                                int *other) {
+    const dem_real pitch = s->aperture + s->bar;
+    const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
+    dem_real best = -1, l;
+    int k;
+    for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
+        const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
+        const double ix = floor((double)(x.x/pitch - shift) + 0.5);
+        const double iy = floor((double)(x.y/rows - shift) + 0.5);
+        const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
+        l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
+        if (best >= 0 && l >= best) continue;
+        best = l;
+        *centre = c;
+        at[0] = ix;
+        at[1] = iy;
+        *other = k;
+    }
+    return best;
+}
+/* True if x, in the plane of a plate, is in a hole or beyond the disc. */
+static int demi_plate_open(const dem_sieve_desc *s, dem_vec3 x) {
+    const dem_real wide = s->kind == DEM_SIEVE_SLOTS ? s->length : s->aperture;
+    const dem_real a = wide + s->bar, b = s->aperture + s->bar;
+    dem_vec3 c;
+    double at[2];
+    int other;
+    if (s->radius > 0 && x.x*x.x + x.y*x.y > s->radius*s->radius) return 1;
+    if (s->kind == DEM_SIEVE_ROUND)
+        return demi_round_hole(s, x, &c, at, &other) < s->aperture*s->aperture/4;
+    c.x = x.x - (dem_real)floor((double)(x.x/a) + 0.5)*a;
+    c.y = x.y - (dem_real)floor((double)(x.y/b) + 0.5)*b;
+    return (!(wide > 0) || DEMI_ABS(c.x) < wide/2) && DEMI_ABS(c.y) < s->aperture/2;
+}
+/* True if the segment from x to x + to crosses a surface of revolution. With radius r and height z,
+   the piece from (R, H) to (R + e, H + f) is on the cone f r = e (z - H) + f R. Squared, that is a
+   quadratic equation for the fraction of the segment; it includes the cone's other half. */
+static int demi_revolved_crossed(const demi_wall *wall, dem_vec3 x, dem_vec3 to) {
+    const double A = (double)(to.x*to.x + to.y*to.y), B = (double)(x.x*to.x + x.y*to.y);
+    const double C = (double)(x.x*x.x + x.y*x.y);
+    int i, k;
+    for (k = 0; k + 1 < wall->ring_count; k++) {
+        const double R = (double)wall->ring_radius[k], H = (double)wall->ring_height[k];
+        const double e = (double)wall->ring_radius[k + 1] - R;
+        const double f = (double)wall->ring_height[k + 1] - H, size = e*e + f*f;
+        const double u = e*((double)x.z - H) + f*R, v = e*(double)to.z;
+        const double a = f*f*A - v*v, b = f*f*B - u*v, c = f*f*C - u*u, root = b*b - a*c;
+        double q, t, r, along;
+        if (root < -1e-12*b*b) continue;        /* a flat piece has a double root */
+        q = -b - (b < 0 ? -1 : 1)*sqrt(DEMI_MAX(root, 0));
+        for (i = 0; i < 2; i++) {
+            t = i ? c/q : q/a;
+            if (!(t >= 0 && t <= 1)) continue;
+            r = sqrt(DEMI_MAX(C + t*(2*B + t*A), 0));
+            along = (r - R)*e + ((double)x.z + t*(double)to.z - H)*f;
+            if (along > -1e-6*size && along < (1 + 1e-6)*size &&
+                f*(u + v*t) > -1e-9*size*(r + R)) return 1;
+        }
+    }
+    return 0;
+}
+/* True if the segment from x to x + to, in the frame of a wall, crosses it: a surface of revolution
+   or a plate without thickness. */
+static int demi_round_crossed(const demi_wall *wall, dem_vec3 x, dem_vec3 to) {
+    if (wall->kind == DEMI_WALL_REVOLVED) return demi_revolved_crossed(wall, x, to);
+    if ((x.z > 0) == (x.z + to.z > 0)) return 0;
+    return !demi_plate_open(&wall->sieve, demi_sub(x, demi_scale(to, x.z/to.z)));
 }
 
 /* --- one sphere against one element, in the frame of the wall: sets normal (grain -> wall) and
@@ -15002,6 +15187,8 @@ static void demi_domain_search(dem_world *w, int d) {
    dem_world.
    --------------------------------------------------------------------------------------------- */
 
+/* The gap, m, of a candidate that is only a sheet between bodies: larger than any. */
+#define DEMI_ONLY_SHEET DEM_R(1e30)
 /* Appends an element of a wall to the wall candidates of work group d. gap: m, between body and
    element; shift: m, from the body to its image at the wall; cell: of a tessellation. */
 static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
@@ -15129,23 +15316,26 @@ static void demi_wall_look_all(dem_world *w, demi_domain *domain, int d, int i, 
         }
     }
 }
-/* Lists the elements of all surfaces near body i that it does not ignore, unless it is fixed or a
-   ghost. */
+/* Lists the elements of all surfaces near body i that it does not ignore. A fixed body and a ghost
+   have no contacts with walls: their candidates are sheets only, with the gap DEMI_ONLY_SHEET. */
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
-    int j, n;
-    if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_is_ghost(w, i)) return;
+    const int touches = !(w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) &&
+        !demi_is_ghost(w, i);
+    int j, n, k = d*w->wall_stride + domain->walls;
+    if (!touches && !w->sheeted) return;
     for (j = 0; j < w->wall_count + w->surface_count; j++) {
         const demi_wall *wall = demi_surface_of(w, j);
         dem_vec3 shift;
         if (wall->kind == DEMI_WALL_NONE || wall->joined || wall->covered ||
-            demi_surface_scale(w, j, i) != wall->scale ||
+            (!touches && !wall->open) || demi_surface_scale(w, j, i) != wall->scale ||
             (w->effects.ignoring && demi_ignores(w, w->bodies.material[i] - 1, wall->material)))
             continue;
         for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
                                     w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
             demi_wall_look_all(w, domain, d, i, j, shift);
     }
+    for (; !touches && k < d*w->wall_stride + domain->walls; k++) w->wall_gap[k] = DEMI_ONLY_SHEET;
 }
 /* Lists the wall candidates of a work group, body by body; those of a body and a wall are
    consecutive. */
@@ -15810,18 +16000,15 @@ static void demi_domain_adopt(dem_world *w, int d) {
 
 /* --- sheets: bodies on both sides of a surface without thickness do not touch --- */
 
-/* True if the segment from x to x + to, in the frame of a surface, crosses an element. *at: the
-   crossing point, as a fraction of the segment. */
-static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, dem_vec3 to,
-                                dem_real *at) {
+/* True if the segment from x to x + to, in the frame of a surface, crosses an element. */
+static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, dem_vec3 to) {
     const dem_real *plane = wall->planes + 4*element;
     const dem_vec3 n = demi_at(plane);
     const dem_real here = demi_dot(n, x) - plane[3], there = here + demi_dot(n, to);
     dem_vec3 c[3], p;
     int i, corners, sides = 0;
     if ((here > 0) == (there > 0)) return 0;
-    *at = here/(here - there);
-    p = demi_add(x, demi_scale(to, *at));
+    p = demi_add(x, demi_scale(to, here/(here - there)));
     corners = demi_wall_corners(wall, element, c);
     for (i = 0; i < corners; i++) {
         const dem_vec3 e = demi_sub(c[(i + 1)%corners], c[i]), d = demi_sub(p, c[i]);
@@ -15830,46 +16017,41 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     }
     return sides == corners;
 }
-/* True if a sheet among the candidates of a body crosses the line from its centre to another one,
-   at a point in the bounding spheres of both, extended by half a skin. to: m, to the image of the
-   other, whose radius is `radius`, m. */
-static int demi_sheet_before(const dem_world *w, int body, dem_vec3 to, dem_real radius) {
-    const dem_real more = demi_cover(w)/2, length = demi_length(to);
+/* True if a sheet among the candidates of `body` crosses the line from its centre to that of
+   `other`, which must not ignore it. to: m, to the image of the other. */
+static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 to) {
     const int first = w->walled[body] - 1, d = DEMI_MAX(first, 0)/w->wall_stride;
     const int end = first < 0 ? first : d*w->wall_stride + w->domains[d].walls;
-    const dem_real own = w->bodies.pos[4*body + 3] + more;
-    const dem_real gone = more + (dem_real)(w->margin.gone + w->margin.walls_gone);
-    dem_vec3 x = to, way = to;
+    const int material = w->bodies.material[other] - 1;
+    const dem_real gone = demi_cover(w)/2 + (dem_real)(w->margin.gone + w->margin.walls_gone);
+    dem_vec3 from = to, way = to, x;
     int k, had = -1;
     for (k = first; k < end && w->wall_body[k] == body; k++) {
         const demi_wall *wall = demi_surface_of(w, w->wall_id[k]);
-        dem_real at;
-        if (!wall->open || w->wall_gap[k] > gone) continue;
-        if (had < 0 || w->wall_id[k] != w->wall_id[had] || w->repeating || wall->step[0].x > 0) {
-            const dem_real *R = wall->pose.rotation;
-            x = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
-                demi_at(w->wall_shift + 3*(size_t)k)), wall->pose.position));
-            if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
+        const demi_wall *whole = wall->scale ? &w->walls[wall->lead] : wall;
+        const dem_real *shift = w->wall_shift + 3*(size_t)k, *R = wall->pose.rotation;
+        if (!wall->open || (w->wall_gap[k] > gone && w->wall_gap[k] < DEMI_ONLY_SHEET) ||
+            (w->effects.ignoring && demi_ignores(w, material, wall->material))) continue;
+        if (had < 0 || w->wall_id[k] != w->wall_id[had] ||
+            memcmp(shift, w->wall_shift + 3*(size_t)had, 3*sizeof *shift)) {
+            from = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
+                                                      demi_at(shift)), wall->pose.position));
             way = demi_unrotate(R, to);
+            if (!demi_faceted(whole) && demi_round_crossed(whole, from, way)) return 1;
             had = k;
         }
-        if (demi_element_crossed(wall, w->wall_element[k], x, way, &at) &&
-            at*length < own && (1 - at)*length < radius + more) return 1;
+        if (!demi_faceted(whole)) continue;
+        x = from;
+        if (wall->step[0].x > 0) x = demi_sub(x, demi_cell_shift(wall, w->wall_cell[k], x));
+        if (demi_element_crossed(wall, w->wall_element[k], x, way)) return 1;
     }
     return 0;
 }
-/* True for ghosts and fixed bodies: the search gives them no wall candidates. */
-static int demi_unlisted(const dem_world *w, int i) {
-    return demi_is_ghost(w, i) || !(w->bodies.inv_mass[i] > 0);
-}
-/* True if a sheet lies between bodies a and b. It is among the candidates of both, unless one is a
-   ghost or fixed, or has facets of its own (>>tessellate). to: m, from a to the image of b. */
+/* True if a sheet lies between bodies a and b: if the line between their centres crosses it. Where
+   the two are candidates of each other, the crossing is within half of demi_cover from the sphere
+   of one of them, and so the sheet is a candidate of that one. to: m, from a to the image of b. */
 static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
-    const int at_a = w->walled[a], at_b = w->walled[b], facets = w->effects.scales != 0;
-    if (at_a && (at_b || facets || demi_unlisted(w, b)) &&
-        demi_sheet_before(w, a, to, w->bodies.pos[4*b + 3])) return 1;
-    return at_b && (facets || (!at_a && demi_unlisted(w, a))) &&
-        demi_sheet_before(w, b, demi_scale(to, -1), w->bodies.pos[4*a + 3]);
+    return demi_sheet_before(w, a, b, to) || demi_sheet_before(w, b, a, demi_scale(to, -1));
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */
@@ -17209,26 +17391,16 @@ static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi
 static int demi_sieve_round(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
     const dem_real half = s->thickness/2, z = demi_clamp(x.z, -half, half);
     const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
-    const dem_real pitch = s->aperture + s->bar;
-    const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
-    dem_real best = -1, l;
+    dem_real best, l;
     dem_vec3 way, centre = x, to;
-    int32_t number = 0;
-    int k, side, count = 0;
+    double at[2] = {0, 0};
+    int32_t number;
+    int other = 0, side, count = 0;
     if (R > 0 && S > 0 && S > R - r)
         count = demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
     if (R > 0 && S > R) return count;           /* beyond the disc */
-    for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
-        const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
-        const double ix = floor((double)(x.x/pitch - shift) + 0.5);
-        const double iy = floor((double)(x.y/rows - shift) + 0.5);
-        const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
-        l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
-        if (best >= 0 && l >= best) continue;
-        best = l;
-        centre = c;
-        number = demi_sieve_number(ix, iy, 4*k);
-    }
+    best = demi_round_hole(s, x, &centre, at, &other);
+    number = demi_sieve_number(at[0], at[1], 4*other);
     if (best >= a*a) return demi_sieve_face(s, x, r, out);
     l = DEMI_SQRT(best);
     way = l > 0 ? demi_v((x.x - centre.x)/l, (x.y - centre.y)/l, 0) : demi_v(1, 0, 0);
@@ -24387,12 +24559,14 @@ typedef struct demi_knot {
     int32_t group;                 /* a node of its group of connected nodes, at the end the root;
                                       the root has the values of the group: */
     int32_t guarded, open;         /* level of the energy guard, 0 to 2, see demi_joints_guard; bit
-                                      0: some joint has a gap, bit 1: since the user moved a body */
+                                      0: some joint has a gap beyond `closed`, bit 1: since the user
+                                      moved a body */
     int32_t excess, grounded;      /* joints minus bodies; 1: a joint to a wall, space or a fixed
                                       body */
     double work, bank, kinetic;    /* J: work of its joints; energy that they have absorbed; kinetic
                                       energy of its bodies */
-    double wide, pull, kept;
+    double spare;                  /* J: the part of bank that displacements may spend */
+    double wide, closed;           /* m: largest gap; largest one that impulses may close */
     double x[6];                   /* right-hand side, then solution */
     dem_quat turned;               /* of a body: orientation a step ahead, see demi_knots_ahead */
     /* used by demi_knots_order: neighbours; queue of nodes with a degree of this index; number of
@@ -24404,12 +24578,13 @@ typedef struct demi_link_of { int32_t to, next; } demi_link_of;
 /* DEMI_GIVE: softness of joints over the inverse effective mass. DEMI_GIVE_LOOPS: the same in
    loops, whose rows may be redundant; its square is above round-off, so pivots that small do no
    harm. DEMI_JOINED: tolerance for the gap of a joint, in smallest radii. DEMI_BANKED: part of the
-   kinetic energy that joints may return after they have absorbed it. */
+   kinetic energy that joints may return after they have absorbed it. DEMI_EVEN: part of the
+   impulses of joints that may close gaps. */
 #define DEMI_GIVE (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-9))
 #define DEMI_GIVE_LOOPS DEM_R(1e-6)
 #define DEMI_JOINED (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-8))
 #define DEMI_BANKED 1e-3
-#define DEMI_SMOOTH 1e-4
+#define DEMI_EVEN 1e-5
 /* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
    they do not touch each other. */
 static int demi_joined(const dem_world *w, int a, int b, int wall) {
@@ -24728,9 +24903,10 @@ static void demi_impulses_lay(dem_world *w, int d) {
    Energy guard: the impulses p of a group of connected joints do the work
    p (J u before + J u after)/2, exactly. If this exceeds the energy that the group has absorbed
    before (remembered up to 1e-3 of its kinetic energy), the target of its rows becomes
-   J u after = -J u before/2, and if necessary -J u before, which does no work whatever contacts,
-   motors and fields do. The remaining gaps are closed by displacements that leave velocities
-   unchanged.
+   J u after = -q dt/2, with the acceleration q of a relative to b in the rows without forces, and
+   if necessary -J u before, which does no work whatever contacts, motors and fields do. With the
+   first, J u before = q dt/2, the work is O(dt^4), forces are smooth, and the gap is q dt^2/4.
+   Displacements that leave velocities unchanged close it as soon as the energy covers them.
    A motor with a torque limit is a row until it reaches the limit, and then a given torque.
    Owns w->joints; the system and its solution are in >>joints-solved. Tests:
    tests/impulse/test_joints.c.
@@ -25371,8 +25547,26 @@ static void demi_rod_lay(dem_world *w, int i) {
         if (k >= r->rows) r->given[k] = 0;
     }
 }
+/* Returns the largest gap, m, that impulses may close: DEMI_EVEN of the way on which those of the
+   last step move the bodies, or round-off. */
+static double demi_rod_closed(const dem_world *w, const demi_rod *r) {
+    const demi_solver *s = &w->solver;
+    const dem_real pull = demi_length(demi_at(r->given))*
+        (s->movers[r->a].inv + s->movers[r->b].inv);
+    dem_real far = 0;
+    int e;
+    for (e = 0; e < 2; e++) {
+        const int body = e ? r->b : r->a;
+        far = DEMI_MAX(far, demi_length(r->arm[e]));
+        if (body < w->bodies.count)
+            far = DEMI_MAX(far, demi_length(demi_at(w->bodies.pos + 4*body)));
+    }
+    return DEMI_MAX(DEMI_EVEN*(double)(pull*s->dt),
+                    8*(DEMI_SINGLE ? FLT_EPSILON : DBL_EPSILON)*(double)far);
+}
 /* Sets up all joints of this step: solver bodies of walls and space, rows, velocities before the
-   step, and the energies and gaps of each group for the energy guard. */
+   step, and the energies and gaps of each group for the energy guard. A group with a gap begins at
+   level 1: impulses that close a gap in a step would be far larger than those of the motion. */
 static void demi_joints_lay(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, e;
@@ -25412,20 +25606,19 @@ static void demi_joints_lay(dem_world *w) {
             demi_joint *j = w->joints + s->knots[i].rod;
             const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
             const dem_real gap = j->state.gap + j->state.tilt*size;
-            const demi_rod *r = s->rods + s->knots[i].rod;
-            const dem_real pull = demi_length(demi_at(r->given))*
-                (s->movers[r->a].inv + s->movers[r->b].inv)*s->dt;
             group->bank += j->bank;
             group->wide = DEMI_MAX(group->wide, (double)gap);
-            group->pull = DEMI_MAX(group->pull, (double)pull);
+            group->closed = DEMI_MAX(group->closed, demi_rod_closed(w, s->rods + s->knots[i].rod));
             j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
-            group->open |= (gap > 100*DEMI_JOINED*size) | (j->apart > few)*2;
+            group->open |= (j->apart > few)*2;
         } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
             demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
             (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
     }
-    for (i = 0; i < s->knot_count; i++)
-        s->knots[i].guarded = s->knots[i].wide > DEMI_SMOOTH*s->knots[i].pull;
+    for (i = 0; i < s->knot_count; i++) {
+        s->knots[i].guarded = s->knots[i].wide > s->knots[i].closed;
+        s->knots[i].open |= s->knots[i].guarded;
+    }
     s->factored = 0;
 }
 /* Warm start: applies the impulses of the last step, and those of motors with a given torque. */
@@ -25510,10 +25703,10 @@ static void demi_rod_bends(const dem_world *w, int joint, dem_real *bend) {
     for (k = 3; k < 5; k++) bend[k] = demi_dot(axis, r->along[k - 3]);
 }
 /* Computes the residual velocities of a joint's rows, m/s and rad/s. Their target is that its
-   points and axes coincide at the next detection. In a guarded group it is the change of velocity
-   in half a step in which the gap grows evenly (level 1), or the opposite of the velocity before
-   the step (level 2), unless `shifts` is 1, which asks for the gaps to be closed by displacements.
-   Returns the squared sum, (m/s)^2. */
+   points and axes coincide at the next detection. In a guarded group it is the relative velocity
+   half a step after the one at which they would move along with each other (level 1), or the
+   opposite of the velocity before the step (level 2), unless `shifts` is 1, which asks for the gaps
+   to be closed by displacements. Returns the squared sum, (m/s)^2. */
 static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *lacks) {
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + i;
@@ -25634,8 +25827,12 @@ static double demi_rod_work(const dem_world *w, const demi_rod *r) {
     return work;
 }
 /* Energy guard: raises the level of each group whose joints would do more work than the energy that
-   they have absorbed before. At level 2 they reverse their velocities, which does no work whatever
-   else acts. Returns the number of groups raised. */
+   they have absorbed before. At level 1 they ask for the relative velocity that the points have
+   half a step after they moved along with each other, -q dt/2, where q is their acceleration
+   relative to each other without forces. Before the step it was q dt/2, so their work is only
+   O(dt^4), and the forces are as smooth as q. Velocities that oscillate from step to step are
+   forgotten. At level 2 joints reverse their velocities, which does no work whatever else acts.
+   Returns the number of groups raised. */
 static int demi_joints_guard(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, n = 0;
@@ -25653,7 +25850,7 @@ static int demi_joints_guard(dem_world *w) {
     for (i = 0; i < s->knot_count && n; i++) s->knots[i].group = demi_knot_group(s, i);
     return n;
 }
-/* Closes the gaps of guarded groups by displacements, as far as the energy that they have absorbed
+/* Closes the gaps of guarded groups by displacements, as far as the energy that they may spend
    covers the work against gravity. Gaps that the user has made by moving a body are closed whatever
    the work. Returns the largest displacement, m. */
 static double demi_joints_shift(dem_world *w) {
@@ -25663,16 +25860,7 @@ static double demi_joints_shift(dem_world *w) {
     for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
     if (!any) return 0;
     demi_joints_solve(w, 1);
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = s->knots[i].kept = 0;
-    for (i = 0; i < w->joint_count; i++) {
-        const demi_rod *r = s->rods + i;
-        dem_real u[6];
-        int e;
-        if (!r->rows) continue;
-        demi_rod_velocity(s, r, u);
-        for (e = 0; e < 5; e++)
-            s->knots[demi_knot_group(s, r->knot)].kept += fabs((double)(r->given[e]*u[e]));
-    }
+    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i;
         const double fall = demi_d3_dot(demi_d3_of(w->desc.gravity), demi_d3_at(k->x));
@@ -25681,9 +25869,8 @@ static double demi_joints_shift(dem_world *w) {
     }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i, *group = s->knots + k->group;
-        const double spare = DEMI_MAX(0, group->bank -
-                                      DEMI_MIN(group->kept, DEMI_BANKED/2*group->kinetic));
-        const double paid = group->open > 1 || !(group->work > spare) ? 1 : spare/group->work;
+        const double paid = group->open > 1 || !(group->work > group->spare) ? 1
+            : group->spare/group->work;
         const dem_real by = (dem_real)paid*s->dt;
         const dem_vec3 way = demi_scale(demi_d3_real(demi_d3_at(k->x)), by);
         const dem_vec3 turn = demi_scale(demi_d3_real(demi_d3_at(k->x + 3)), by);
@@ -25706,22 +25893,38 @@ static double demi_joints_shift(dem_world *w) {
 }
 /* Adds the energy that joints have absorbed in this step to what they may return later, at most
    DEMI_BANKED of the kinetic energy of their group. They need it because velocities that keep the
-   points together oscillate about those that conserve energy. */
+   points together oscillate about those that conserve energy. Displacements may spend what was
+   there before this step, except for twice what that oscillation needs: half of p J u. */
 static void demi_joints_bank(dem_world *w) {
     demi_solver *s = &w->solver;
-    int i;
-    for (i = 0; i < s->knot_count; i++) s->knots[i].bank = 0;
-    for (i = 0; i < w->joint_count; i++) {
-        const demi_rod *r = s->rods + i;
-        w->joints[i].bank -= w->joints[i].held;
-        if (r->rows) s->knots[demi_knot_group(s, r->knot)].bank += w->joints[i].bank;
+    int i, k;
+    for (i = 0; i < s->knot_count; i++) {
+        s->knots[i].spare = s->knots[i].bank;
+        s->knots[i].bank = s->knots[i].work = 0;
     }
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        const demi_knot *k = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
-        if (!k) w->joints[i].bank = 0;
-        else if (k->bank > DEMI_BANKED*k->kinetic)
-            w->joints[i].bank *= DEMI_BANKED*k->kinetic/k->bank;
+        demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+        dem_real u[6];
+        w->joints[i].bank -= w->joints[i].held;
+        if (!r->rows) continue;
+        group->bank += w->joints[i].bank;
+        demi_rod_velocity(s, r, u);
+        for (k = 0; k < 5; k++) group->work += fabs((double)(r->given[k]*u[k]));
+    }
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        const demi_knot *group = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
+        if (!group) w->joints[i].bank = 0;
+        else if (group->bank > DEMI_BANKED*group->kinetic)
+            w->joints[i].bank *= DEMI_BANKED*group->kinetic/group->bank;
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        demi_knot *group = s->knots + i;
+        const double most = DEMI_BANKED*group->kinetic;
+        group->bank = DEMI_MIN(group->bank, most);
+        group->spare = DEMI_MAX(0, DEMI_MIN(group->spare, group->bank) -
+                                DEMI_MIN(group->work, most/2));
     }
 }
 /* Returns the gap of joint i at the next detection, m, including the tilt times demi_rod_size. */
@@ -26659,7 +26862,6 @@ static void demi_ahead(dem_world *w) {
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
-        wall->was = wall->ahead;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
@@ -29466,30 +29668,29 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     demi_wall next;
     const void *rows;
     void *old;
-    int dropped, alone;
+    int dropped, remains;
     dem_result result;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
     if (result != DEM_OK) return result;
     /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
        decides which of its periodic images are at rest relative to it */
-    alone = demi_wall_stays(&w->walls[i], &next) &&
-        demi_wall_alone(w, &w->walls[i], i) && demi_wall_alone(w, &next, i) &&
-        (!w->repeating || (w->walls[i].motion.kind != DEM_MOTION_ROTATING &&
-                           next.motion.kind != DEM_MOTION_ROTATING));
-    dropped = alone || demi_list_drop(w);
+    remains = demi_wall_stays(&w->walls[i], &next) && demi_wall_remains(w, &next, i) &&
+        (!w->repeating || (!demi_motion_turns(&w->walls[i].motion) &&
+                           !demi_motion_turns(&next.motion)));
+    dropped = remains || demi_list_drop(w);
     rows = dropped ? w->walls[i].motion.table : next.motion.table;
     memcpy(&old, &rows, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     if (!dropped) return demi_no_memory(w, __func__);
-    if (!alone) demi_surfaces_outdated(w);
-    if (!alone || !demi_wall_led(w, &w->walls[i]))
+    if (!remains) demi_surfaces_outdated(w);
+    if (!remains || !demi_wall_led(w, &w->walls[i]))
         w->stage.forces_valid = w->stage.primed = 0;
     demi_wall_before(w, i);
     w->walls[i] = next;
     demi_wall_after(w, i);
     demi_built(w, __func__);
-    if (!alone || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
+    if (!remains || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
     return DEM_OK;
 }
 
@@ -29523,7 +29724,7 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
    it is not part of the same piston. first: the world whose walls move. */
 static double demi_servo_force_of(const dem_world *first, const dem_world *w, int of, int i) {
     const demi_wall *walls = first->walls;
-    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_together(&walls[i], &walls[of])) return 0;
+    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_alike(&walls[i], &walls[of])) return 0;
     return -(double)demi_dot(w->walls[i].loads.force, demi_unit(walls[of].motion.velocity));
 }
 /* Returns the sum over the piston. */
@@ -29559,7 +29760,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;
-            if (c->b >= 0 || !demi_walls_together(&walls[c->wall], &walls[of]) ||
+            if (c->b >= 0 || !demi_walls_alike(&walls[c->wall], &walls[of]) ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
             demi_kept_coefs(w, c, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
@@ -29601,7 +29802,7 @@ static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double 
 static int demi_servo_leader(const dem_world *first, int i) {
     int k = 0;
     while (k < i && (first->walls[k].kind == DEMI_WALL_NONE ||
-                     !demi_walls_together(&first->walls[k], &first->walls[i]))) k++;
+                     !demi_walls_alike(&first->walls[k], &first->walls[i]))) k++;
     return k;
 }
 /* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */
@@ -30220,7 +30421,7 @@ static void demi_ledger_book(dem_world *w) {
                                                            ? (double)w->clock.dt : 0);
     w->booked.energy[DEMI_E_WALLS] += walls;
     w->booked.throughput += fabs(walls);
-    if (w->cell.on && w->stage.forces_valid) demi_cell_book(w);
+    if (w->cell.on && w->stage.forces_valid) demi_cell_book(w, w->cell.rate);
 }
 DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     dem_ledger l;
@@ -31630,26 +31831,11 @@ static void demi_cell_look(dem_world *w) {
         }
     }
 }
-/* Changes the rates. The work of a change is that of half a step, since the last step was booked
-   with the rates before. */
-static void demi_cell_turn(dem_world *w, const double *rate, double shear) {
-    demi_strained *c = &w->cell;
-    double change[3];
-    int k;
-    for (k = 0; k < 3; k++) {
-        change[k] = rate[k] - c->rate[k];
-        c->rate[k] = rate[k];
-    }
-    if (w->desc.ledger)
-        w->booked.energy[DEMI_E_CELL] +=
-            demi_cell_power(w, change, shear - c->shear)*(double)w->clock.dt/2;
-    c->shear = shear;
-}
 /* Chooses the rates for the coming step along the axes that are led to a stress. */
 static dem_result demi_cell_lead(dem_world *w) {
     demi_strained *c = &w->cell;
     dem_real stress[3], most[3];
-    double rate[3], norm = fabs(c->shear), dt = (double)w->clock.dt;
+    double rate[3], drag[3], norm = fabs(c->shear), dt = (double)w->clock.dt;
     int k;
     if (demi_cell_refuse(w, "dem_world_step")) return DEM_ERROR_ARGUMENT;
     demi_put(stress, c->desc.stress);
@@ -31660,28 +31846,30 @@ static dem_result demi_cell_lead(dem_world *w) {
             : c->rate[k];
         norm = DEMI_MAX(norm, fabs(rate[k]) + fabs(c->shear));
     }
-    demi_cell_turn(w, rate, c->shear);
+    memcpy(drag, c->rate, sizeof drag);
+    memcpy(c->rate, rate, sizeof rate);
     if (!(norm*dt <= 0.01))
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: the cell is deformed "
                          "at %g 1/s, which strains it by %g in a step of %g s, must be at most "
                          "0.01; use lower rates (rate, shear, rate_most)",
                          (unsigned long long)w->clock.steps, norm, norm*dt, dt);
-    c->squeeze = norm*dt*(2*(double)w->effects.radius_max + (double)demi_cover(w));
+    if (w->desc.ledger) demi_cell_book(w, drag);
+    c->squeeze = norm*dt*(1 + norm*dt/2)*(2*(double)w->effects.radius_max + (double)demi_cover(w));
     return DEM_OK;
 }
 /* Moves the sides of the cell for one step, and all images. */
 static void demi_cell_move(dem_world *w) {
     demi_strained *c = &w->cell;
-    const double dt = (double)w->clock.dt;
+    double by[3], shear = demi_cell_map(w, by);
     dem_real lo[3], hi[3];
     int k;
     demi_put(lo, w->desc.domain.lo);
     demi_put(hi, w->desc.domain.hi);
-    c->offset += (c->rate[0]*c->offset + c->shear*c->side[1])*dt;
-    c->sheared += c->shear*dt;
+    c->offset += by[0]*c->offset + shear*c->side[1];
+    c->sheared += c->shear*(double)w->clock.dt;
     for (k = 0; k < 3; k++) {
-        c->side[k] += c->rate[k]*c->side[k]*dt;
-        c->strain[k] += log1p(c->rate[k]*dt);
+        c->side[k] += by[k]*c->side[k];
+        c->strain[k] += log1p(by[k]);
         if (w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC) continue;
         lo[k] = (dem_real)(c->mid[k] - c->side[k]/2);
         hi[k] = (dem_real)(c->mid[k] + c->side[k]/2);
@@ -31721,7 +31909,7 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
     demi_strained *c;
     dem_cell_desc before;
     dem_real rate[3], most[3];
-    double lo[3], hi[3], to[3];
+    double lo[3], hi[3];
     int k, moves = 0;
     if (demi_null(w, __func__, desc, "desc") ||
         demi_rows_check(w, __func__, demi_cell_rows, desc, "", "start from DEM_CELL_DESC and set "
@@ -31746,8 +31934,8 @@ DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
     demi_finish(w);                             /* the open half kick belongs to the old rates */
     demi_put(rate, desc->rate);
     demi_put(most, desc->rate_most);
-    for (k = 0; k < 3; k++) to[k] = most[k] > 0 ? c->rate[k] : (double)rate[k];
-    demi_cell_turn(w, to, (double)desc->shear);
+    for (k = 0; k < 3; k++) if (!(most[k] > 0)) c->rate[k] = (double)rate[k];
+    c->shear = (double)desc->shear;
     if (!c->on) c->squeeze = 0;
     demi_scene_changed(w);
     return DEM_OK;
@@ -32272,6 +32460,7 @@ static dem_result demi_step_move(dem_world *w) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose = wall->pose, mid = wall->mid;
         double speed;
+        if (demi_response_is(w, DEMI_MIDWAY)) wall->was = wall->ahead;     /* once per step */
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(w, wall, w->clock.time, &pose);
         if (!demi_response_is(w, DEMI_MIDWAY))
@@ -32523,13 +32712,38 @@ static dem_result demi_member_crushed(dem_world *w) {
                      b < 0 ? (unsigned)w->walls[wall].id : (unsigned)w->bodies.slot[b] + 1,
                      overlap, (double)w->desc.overlap_stop);
 }
+static dem_result demi_member_part(dem_world *w) {
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+    demi_surfaces_outdated(w);
+    return DEM_OK;
+}
+/* Begins the motions that wait until the time of contact detection. Such a wall may leave a surface
+   of walls at rest. After DEM_ERROR_MEMORY the next call tries again. */
+static dem_result demi_motions_begin(dem_world *h) {
+    dem_world *first = demi_member(h, 0);
+    const int midway = demi_response_is(h, DEMI_MIDWAY);
+    const double now = h->clock.time + midway*(double)h->clock.dt/2;
+    int i, parts = 0;
+    for (i = 0; i < first->wall_count; i++)
+        if (first->walls[i].idle && !demi_wall_waits(&first->walls[i], now))
+            parts |= demi_wall_parts(first, i) | 4;
+    if (!parts) return DEM_OK;
+    if (parts & 2 || (parts & 1 && h->team)) {
+        const dem_result result = demi_all_agree(h, demi_member_part);
+        h->stage.list_valid = 0;
+        if (result != DEM_OK) return result;
+    } else if (parts & 1) h->facets_valid = 0;
+    for (i = 0; i < first->wall_count; i++)
+        first->walls[i].idle &= demi_wall_waits(&first->walls[i], now);
+    return DEM_OK;
+}
 /* The part of a step after its move: 2 search, 3 to 5 forces. desc.overlap_stop and, with impulses,
    desc.unsolved_stops make a step fail that is complete; all members then agree that it is. */
 static dem_result demi_step_answer(dem_world *h) {
     const uint64_t unsolved = h->booked.unsolved;
+    dem_result result = demi_motions_begin(h);
     const int search = demi_list_due(h);
-    dem_result result = DEM_OK;
-    if (search) {
+    if (result == DEM_OK && search) {
         result = demi_all_rebuild(h);
         if (result == DEM_OK && demi_outgrown(h)) h->stage.dt_valid = 0;
     }
@@ -32583,8 +32797,9 @@ static dem_result demi_step_once(dem_world *h) {
 
 /* demi_refresh at the positions of contact detection. */
 static dem_result demi_refresh_answer(dem_world *h) {
-    dem_result result = DEM_OK;
+    dem_result result = demi_motions_begin(h);
     int stale = 0;
+    if (result != DEM_OK) return result;
     if (h->stage.pairs_changed) {               /* half-step velocities belong to the old forces */
         h->stage.primed = 0;
         if (!demi_list_drop(h)) return demi_no_memory(h, "dem_world_step");
@@ -37472,6 +37687,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
         demi_visit(s, &wall->servo, sizeof wall->servo);
+        demi_visit(s, &wall->idle, sizeof wall->idle);
         demi_visit(s, &wall->glide, sizeof wall->glide);
         demi_visit(s, &wall->glides, sizeof wall->glides);
         for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);
@@ -38198,7 +38414,8 @@ static int demi_walls_check(const demi_reader *r) {
             !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
             return demi_lie(r, "pose of wall", i);
         if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k) ||
-            demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k))
+            demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k) ||
+            (wall->idle && !(wall->idle == 1 && demi_wall_waits(wall, r->t->clock.time))))
             return demi_lie(r, "motion of wall", i);
         if (!demi_place(wall->glide) || wall->glides != (demi_dot(wall->glide, wall->glide) > 0))
             return demi_lie(r, "surface velocity of wall", i);
@@ -39805,20 +40022,17 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
     demi_probes_free(w, &p);
     demi_join_free(w, &j);
 }
-/* Checks a surface of revolution. It is closed if its profile begins and ends on the axis, or ends
-   where it began. */
+/* Checks a surface of revolution. */
 static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
     const demi_wall *s = &w->walls[wall];
     const int n = s->ring_count;
     const dem_real *r = s->ring_radius, *h = s->ring_height;
-    const int loop = !(r[0] > r[n - 1]) && !(r[0] < r[n - 1]) && !(h[0] > h[n - 1]) &&
-        !(h[0] < h[n - 1]);
     const double e = (double)s->extent;
     const dem_vec3 x = s->home.position;
     double box[6];
     demi_probes p;
     int i, k;
-    if (!loop && (r[0] > 0 || r[n - 1] > 0)) return;
+    if (s->open) return;
     box[0] = (double)x.x - e; box[1] = (double)x.y - e; box[2] = (double)x.z - e;
     for (k = 0; k < 3; k++) box[3 + k] = box[k] + 2*e;
     if (demi_probes_make(w, &p, s, box)) {
@@ -42241,6 +42455,19 @@ static dem_result demi_slabs_migrate(dem_slabs *s) {
         demi_slabs_phase(s, demi_slab_migrate);
     }
 }
+/* Makes the surfaces of the first slab again if they are outdated, and shares them with the others.
+   If memory runs out, the next agreement fails. */
+static void demi_slabs_surfaces(dem_slabs *s) {
+    dem_world *first = s->slabs[0].world;
+    int k, ok = 1;
+    for (k = 1; k < s->local; k++)              /* while those that they share still exist */
+        if (!s->slabs[k].world->facets_valid) demi_surfaces_free(s->slabs[k].world);
+    for (k = 0; k < s->local && ok; k++) {
+        dem_world *w = s->slabs[k].world;
+        if (!w->facets_valid) ok = k ? demi_surfaces_share(w, first) : demi_surfaces_make(first);
+        if (!ok) s->slabs[k].result = demi_no_memory(w, "dem_slabs_step");
+    }
+}
 /* `rebuild` of demi_team. After DEM_ERROR_MEMORY every grain is still in exactly one slab, with its
    contact history; the next call starts again. */
 static dem_result demi_slabs_rebuild(dem_world *h) {
@@ -42248,6 +42475,7 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
     const double skin_before = h->margin.skin_auto;
     dem_result result;
     h->stage.list_valid = 0;
+    demi_slabs_surfaces(s);
     result = demi_slabs_try(s, demi_slab_drop);
     if (s->count > 1) {
         if (result == DEM_OK) result = demi_slabs_skin(s);
@@ -42460,15 +42688,9 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
         demi_wall *b = &to->walls[i];
         *b = first ? first->walls[i] : from->walls[i];
         if (!first && !demi_wall_own(to, b)) return 0;
-        if (first) b->motion.kind = DEM_MOTION_FIXED;
         to->wall_count = i + 1;
     }
-    if (!first) return demi_surfaces_make(to);
-    if (!DEMI_COPY(to, to->surfaces, first->surfaces, first->surface_count)) return 0;
-    to->surface_count = first->surface_count;
-    to->sheeted = first->sheeted;
-    to->effects.scales = first->effects.scales;
-    return to->facets_valid = 1;
+    return first ? demi_surfaces_share(to, first) : demi_surfaces_make(to);
 }
 /* Copies the shapes of a scene; slabs after the first share those of the first. Returns 0 if memory
    ran out. */
@@ -42911,6 +43133,8 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     demi_slab_sums_clear(w, DEMI_SUM | DEMI_LARGEST);
     memset(&w->booked.crushed, 0, sizeof w->booked.crushed);
     for (i = 0; i < w->wall_count; i++) {
+        if (w->walls[i].idle != from->walls[i].idle) demi_surfaces_outdated(w);
+        w->walls[i].idle = from->walls[i].idle;
         w->walls[i].pose = from->walls[i].pose;
         w->walls[i].servo = from->walls[i].servo;
         w->walls[i].mid = from->walls[i].mid;

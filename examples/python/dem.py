@@ -4405,7 +4405,7 @@ class World(WorldBase):
 
     def wall_mesh(self, material, mesh):
         """Adds a triangle mesh. Both sides repel. Meshes that do not move relative to each other act as one surface,
-        however it is divided; so do profiles (>>surfaces).
+        however it is divided; so do profiles (>>surfaces). A wall is at rest until its motion begins.
         """
         mesh = self._bound(Mesh.make(mesh))
         return self._id(_lib.dem_wall_mesh_add(self._at, material, mesh))

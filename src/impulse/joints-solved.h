@@ -444,7 +444,8 @@ static void demi_rod_lay(dem_world *w, int i) {
    last step move the bodies, or round-off. */
 static double demi_rod_closed(const dem_world *w, const demi_rod *r) {
     const demi_solver *s = &w->solver;
-    const dem_real pull = demi_length(demi_at(r->given))*(s->movers[r->a].inv + s->movers[r->b].inv);
+    const dem_real pull = demi_length(demi_at(r->given))*
+        (s->movers[r->a].inv + s->movers[r->b].inv);
     dem_real far = 0;
     int e;
     for (e = 0; e < 2; e++) {

@@ -720,7 +720,7 @@ static dem_result demi_motions_begin(dem_world *h) {
         if (result != DEM_OK) return result;
     } else if (parts & 1) h->facets_valid = 0;
     for (i = 0; i < first->wall_count; i++)
-        first->walls[i].idle = first->walls[i].idle && demi_wall_waits(&first->walls[i], now);
+        first->walls[i].idle &= demi_wall_waits(&first->walls[i], now);
     return DEM_OK;
 }
 /* The part of a step after its move: 2 search, 3 to 5 forces. desc.overlap_stop and, with impulses,
