@@ -445,7 +445,6 @@ static dem_result demi_step_move(dem_world *w) {
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose = wall->pose, mid = wall->mid;
-        double speed;
         if (demi_response_is(w, DEMI_MIDWAY)) wall->was = wall->ahead;     /* once per step */
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(w, wall, w->clock.time, &pose);
@@ -463,7 +462,7 @@ static dem_result demi_step_move(dem_world *w) {
         if (w->rail_count) demi_rails_carry(w, i, &mid, &pose);
         wall->pose = pose;
         wall->mid = mid;
-        speed = demi_wall_pace(w, i);
+        const double speed = demi_wall_pace(w, i);
         if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: search in every step */
         else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
     }
