@@ -277,10 +277,69 @@ static void demi_join_unite(demi_join *j, int32_t a, int32_t b) {
     j->mark[DEMI_MIN(a, b)] |= j->mark[DEMI_MAX(a, b)] & (DEMI_JOIN_OPEN | DEMI_JOIN_ANCHORED);
     j->root[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
 }
-/* Marks the connected facets of a wall as open unless they bound a volume, that is unless at each
-   side as many facets run in one direction as in the other. */
-static void demi_join_open(demi_join *j) {
-    int i, k, m, end;
+/* A facet at a side: its angle about the side, rad, and whether the volume that it bounds begins
+   there (1) or ends (0). */
+typedef struct demi_leaf { double at; int facet, begins; } demi_leaf;
+enum { DEMI_LEAVES = 64 };
+/* Fills in a leaf. Where a volume ends as another one begins, as where boxes stand side by side, the
+   end comes first. inside: the facets of the wall face their volume. */
+static demi_leaf demi_leaf_of(const demi_join *j, const demi_side *s, int inside) {
+    const int32_t *f = j->facet + 5*s->facet;
+    const demi_d3 o = demi_d3_at(j->x + 3*s->lo);
+    const demi_d3 e = j->per == 2 ? demi_d(0, 0, 1)
+        : demi_d3_unit(demi_d3_sub(demi_d3_at(j->x + 3*s->hi), o));
+    const demi_d3 u = j->per == 2 ? demi_d(1, 0, 0) : demi_d3_of(demi_across(demi_d3_real(e)));
+    const int32_t tip = f[j->per == 2 ? 1 - s->side : (s->side + 2)%3];
+    const demi_d3 d = demi_d3_sub(demi_d3_at(j->x + 3*tip), o);
+    const double x = demi_d3_dot(u, d), y = demi_d3_dot(demi_d3_cross(e, u), d);
+    const double slack = 1e-6 + 4*j->near_by[tip]/sqrt(x*x + y*y + 1e-300);
+    demi_leaf leaf;
+    leaf.facet = s->facet;
+    leaf.begins = (demi_join_sign(j, s) > 0) == (j->per == 2 ? !inside : inside);
+    leaf.at = atan2(y, x) + (leaf.begins ? 1 : -1)*DEMI_MIN(slack, 1e-3);
+    if (leaf.at < 0) leaf.at += 2*DEMI_PI;
+    return leaf;
+}
+/* Unites the facets of one wall at a side that bound the same volume there: around the side, the
+   facet where it begins and the one where it ends. count: of the sides s, which may be of other
+   walls, too. */
+static void demi_join_around(demi_join *j, const demi_side *s, int count, int wall, int inside) {
+    demi_leaf leaf[DEMI_LEAVES];
+    int stack[DEMI_LEAVES], depth = 0, n = 0, i, k, first = -1;
+    for (i = 0; i < count; i++) {
+        demi_leaf one;
+        if (j->facet[5*s[i].facet + 3] != wall) continue;
+        if (first < 0) first = s[i].facet;
+        if (n == DEMI_LEAVES) {                 /* too many: one volume */
+            for (k = 0; k < n; k++) demi_join_unite(j, first, leaf[k].facet);
+            demi_join_unite(j, first, s[i].facet);
+            continue;
+        }
+        one = demi_leaf_of(j, s + i, inside);
+        for (k = n++; k > 0 && leaf[k - 1].at > one.at; k--) leaf[k] = leaf[k - 1];
+        leaf[k] = one;
+    }
+    for (i = 0; i < 2*n; i++) {                 /* as parentheses match, around the side */
+        const demi_leaf *at = leaf + i%n;
+        if (at->begins && i < n) stack[depth++] = at->facet;
+        else if (!at->begins && depth) demi_join_unite(j, stack[--depth], at->facet);
+    }
+}
+/* Twice the area, or six times the volume, that a facet adds to what its wall bounds. */
+static double demi_join_bounds(const demi_join *j, const int32_t *f, const int32_t *about) {
+    const demi_d3 o = demi_d3_at(j->x + 3*about[0]);
+    const demi_d3 a = demi_d3_sub(demi_d3_at(j->x + 3*f[0]), o);
+    const demi_d3 b = demi_d3_sub(demi_d3_at(j->x + 3*f[1]), o), n = demi_d3_cross(a, b);
+    return j->per == 2 ? demi_d3_dot(n, demi_d(0, 0, 1))
+        : demi_d3_dot(n, demi_d3_sub(demi_d3_at(j->x + 3*f[2]), o));
+}
+/* Divides the facets of a wall into shells that bound one volume each. Connected facets are open,
+   and no shell, unless at each side as many of them run in one direction as in the other. Returns 0
+   if memory ran out. */
+static int demi_join_volumes(dem_world *w, demi_join *j) {
+    double *bounds = (double *)demi_alloc(w, (size_t)j->facets, sizeof *bounds);
+    int i, k, m, end, many = 0;
+    if (!bounds) return 0;
     for (i = 0; i < j->facets; i++) { j->root[i] = i; j->mark[i] = 0; }
     for (i = 0; i < j->sides; i = end) {
         end = demi_sides_end(j->side, j->sides, i);
@@ -294,12 +353,29 @@ static void demi_join_open(demi_join *j) {
             }
             if (sum) j->mark[demi_join_root(j, j->side[k].facet)] |= DEMI_JOIN_OPEN;
         }
+        many |= end - i > 2;
     }
     for (i = 0; i < j->facets; i++) {
-        j->facet[5*i + 4] = demi_join_root(j, i);
-        j->mark[i] |= j->mark[j->facet[5*i + 4]] & DEMI_JOIN_OPEN;
-        if (j->mark[i]) j->facet[5*i + 4] = -1;
+        int32_t *f = j->facet + 5*i;
+        f[4] = demi_join_root(j, i);
+        j->mark[i] |= j->mark[f[4]] & DEMI_JOIN_OPEN;
+        bounds[i] = 0;
+        bounds[f[4]] += demi_join_bounds(j, f, j->facet + 5*f[4]);
     }
+    for (i = 0; i < j->facets && many; i++) j->root[i] = i;
+    for (i = 0; i < j->sides && many; i = end) {
+        end = demi_sides_end(j->side, j->sides, i);
+        for (k = i; k < end; k++) {
+            const int f = j->side[k].facet, wall = j->facet[5*f + 3];
+            for (m = i; m < k && j->facet[5*j->side[m].facet + 3] != wall; m++) continue;
+            if (m == k && !(j->mark[f] & DEMI_JOIN_OPEN))
+                demi_join_around(j, j->side + i, end - i, wall, bounds[j->facet[5*f + 4]] < 0);
+        }
+    }
+    for (i = 0; i < j->facets; i++)
+        j->facet[5*i + 4] = j->mark[i] & DEMI_JOIN_OPEN ? -1 : demi_join_root(j, i);
+    demi_free(w, bounds);
+    return 1;
 }
 /* True if a facet lies in a plane that is a wall of this group, and grains may touch its upper
    side: the plane then acts alone. */
@@ -329,12 +405,13 @@ static int demi_facet_turn(const int32_t *f, int per) {
 /* Of facets that coincide, keeps the first. Where the boundaries of two closed bodies coincide with
    opposite orientations, as where two boxes stand side by side, nothing remains: there is no
    surface between them. A patch of such pairs counts only if at some side of it two other facets
-   continue the surface. So a sheet that is given twice, in either winding, remains. */
-static void demi_join_double(const dem_world *w, demi_join *j) {
+   continue the surface. So a sheet that is given twice, in either winding, remains. Returns 0
+   if memory ran out. */
+static int demi_join_double(dem_world *w, demi_join *j) {
     demi_side *s = j->side;
     int i, k, m, end, left;
     demi_join_sides(j);
-    demi_join_open(j);
+    if (!demi_join_volumes(w, j)) return 0;
     for (i = 0; i < j->facets; i++) {           /* facets by their corners */
         const int32_t *f = j->facet + 5*i, last = j->per == 3 ? f[2] : f[1];
         const int32_t lo = DEMI_MIN(f[0], DEMI_MIN(f[1], last));
@@ -375,6 +452,7 @@ static void demi_join_double(const dem_world *w, demi_join *j) {
     }
     j->changed |= left < j->facets;
     j->facets = left;
+    return 1;
 }
 
 /* --- facets in one plane that cover each other --- */

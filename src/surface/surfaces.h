@@ -32,7 +32,7 @@ DEM_INLINE int demi_surface_wall(const dem_world *w, const demi_wall *surface, i
 /* Makes one surface of the facets: none coincide or cover each other, and none has corners of
    others on its sides. Flat neighbours are merged. Returns 0 if memory ran out. */
 static int demi_join_resolve(dem_world *w, demi_join *j) {
-    demi_join_double(w, j);
+    if (!demi_join_double(w, j)) return 0;
     if (!j->facets) return 1;                   /* all lie in planes */
     if (j->per == 3)
         return demi_join_cover(w, j) && demi_join_divide(w, j) &&
@@ -41,8 +41,7 @@ static int demi_join_resolve(dem_world *w, demi_join *j) {
         !demi_grow(w, DEMI_LOOSE, &j->mark, 1, (size_t)j->facets) ||
         !demi_grow(w, DEMI_LOOSE, &j->side, sizeof(demi_side), 3*(size_t)j->facets) ||
         !demi_grow(w, DEMI_LOOSE, &j->root, sizeof(int32_t), (size_t)j->facets)) return 0;
-    demi_join_double(w, j);
-    return 1;
+    return demi_join_double(w, j);
 }
 /* True if a plane is in the place of an earlier one that moves with it. */
 static int demi_plane_again(const dem_world *w, int wall) {
