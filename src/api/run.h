@@ -353,7 +353,7 @@ typedef struct dem_contact_info {
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
 /* Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a
    pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all;
-   impulses: 14); vectors as seen from a. Values that the function writes there count from the
+   impulses: 17); vectors as seen from a. Values that the function writes there count from the
    next step on. */
 typedef void (*dem_contact_fn)(const dem_contact_info *contact, dem_real *memory, void *user);
 /* Calls `fn` for every contact, those with walls included, and returns their number. With a law

@@ -365,8 +365,9 @@ static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was remove
    that is a vector component; traits; functions, see demi_response_row (0: none needed).
    The history with impulses is: friction force and moment (vectors); the normal force and the part
    of it that cohesion takes, N; the normal velocity after the step and the velocity that was
-   reversed, m/s (see demi_impulse_turns); 1 if the contact slides, else 0; and the normal for which
-   the force was solved (a vector). */
+   reversed, m/s (see demi_impulse_turns); 1 if the contact slides, else 0; the normal for which the
+   force was solved (a vector); and what the coming step will lose by it along the normal, by slip
+   and by rolling, J. */
 enum {
     DEMI_LAWS = 1,                 /* contact laws give the force of each contact */
     DEMI_LASTING = 2,              /* contacts have a duration, which limits the time step */
@@ -376,7 +377,8 @@ enum {
                                       speeds */
     DEMI_JOINTED = 32              /* joints and motors act */
 };
-enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_NORMAL = 11, DEMI_IMPULSE_REALS = 14 };
+enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_NORMAL = 11, DEMI_IMPULSE_LOST = 14,
+       DEMI_IMPULSE_REALS = 17 };
 #define DEMI_RESPONSES(X) \
     X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
       demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \

@@ -151,12 +151,11 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
         const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
         const dem_vec3 u = demi_scale(demi_add(demi_impulse_before(w, c), after), DEM_R(0.5));
-        const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
+        const dem_real all[DEMI_IMPULSE_LOST] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
             moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per,
             demi_dot(after, c->normal), s->beside[m->at].turns,
             demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride]),
             c->normal.x, c->normal.y, c->normal.z};
-        for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
         part[0] = -(double)demi_dot(demi_sub(p, c->slip), u);
         part[1] = -(double)demi_dot(c->slip, u);
         if (s->twisted) {
@@ -166,6 +165,9 @@ static void demi_impulses_tell(dem_world *w, int d) {
                                          demi_at(w->bodies.spin + 4*m->a));
             part[2] = -(double)demi_dot(moment, demi_sub(wb, wa))/2;
         }
+        for (e = 0; e < DEMI_IMPULSE_LOST; e++) memory[(size_t)e*o.stride] = all[e];
+        for (; e < DEMI_IMPULSE_REALS; e++)
+            memory[(size_t)e*o.stride] = (dem_real)part[e - DEMI_IMPULSE_LOST];
         lost[DEMI_E_DASHPOT] += part[0];
         lost[DEMI_E_SLIDE] += part[1];
         lost[DEMI_E_ROLL] += part[2];

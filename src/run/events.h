@@ -462,12 +462,11 @@ static void demi_events_switch(dem_world *w, int on) {
         demi_kernel_choose(demi_member(w, k));
     }
 }
-/* Begins a recording. */
-static void demi_events_start(dem_world *w) {
+/* Ends a recording for lack of memory; demi_events_tell reports it. */
+static void demi_events_fail(dem_world *w) {
     demi_events_clear(w);
-    w->events.n.fresh = 1;
-    w->events.n.since = w->clock.time;
-    demi_events_switch(w, 1);
+    demi_events_switch(w, 0);
+    w->events.failed = 1;
 }
 /* Takes over the contacts that work group d of member m has noted. count: notes taken before, and
    afterwards with these; *next: as for demi_event_find. Returns 0 if memory ran out. */
@@ -525,10 +524,44 @@ static void demi_events_take(dem_world *w) {
     for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--)
         ok = demi_event_end(w, i);
     e->n.fresh = 0;
-    if (ok) return;
+    if (!ok) demi_events_fail(w);
+}
+/* Impulses: notes the present contacts, whose losses the coming step will book, from their
+   histories. Returns 0 if memory ran out. */
+static int demi_events_note(dem_world *w) {
+    demi_walk c = demi_walk_begin();
+    if (!demi_events_room(w) || !demi_notes_room(w)) return 0;
+    while (demi_walk_next(w, &c)) {
+        const size_t step = c.own ? 1 : (size_t)w->near.stride;
+        const dem_real *y = c.own ? c.own->memory
+            : w->near.memory + (size_t)c.d*DEMI_IMPULSE_REALS*step + c.entry;
+        const dem_real *lost = y + DEMI_IMPULSE_LOST*step;
+        const dem_real ra = w->bodies.pos[4*c.a + 3];
+        const int wall = c.b < 0;
+        double energy[DEMI_E_ROLL + 1] = {0};
+        demi_noted_at *at;
+        energy[DEMI_E_DASHPOT] = (double)lost[0];
+        energy[DEMI_E_SLIDE] = energy[DEMI_E_SHEAR_WORK] = (double)lost[step];
+        energy[DEMI_E_ROLL] = (double)lost[2*step];
+        at = demi_note(w, c.d, c.a, wall ? -1 - c.own->wall : c.b, DEMI_NOTED_OLD, 0, y[6*step],
+                       energy);
+        if (!at) continue;
+        at->normal = c.info.normal;
+        at->arm = c.own ? c.own->arm_a
+            : demi_note_arm(at->normal, ra, demi_length(c.branch), ra + w->bodies.pos[4*c.b + 3]);
+        at->shift = wall ? c.own->shift : demi_v(0, 0, 0);
+    }
+    demi_events_take(w);
+    return 1;
+}
+/* Begins a recording. */
+static void demi_events_start(dem_world *w) {
     demi_events_clear(w);
-    demi_events_switch(w, 0);
-    e->failed = 1;
+    w->events.n.fresh = 1;
+    w->events.n.since = w->clock.time;
+    demi_events_switch(w, 1);
+    if (demi_response_is(w, DEMI_LASTING) || !w->stage.list_valid || !w->stage.forces_valid) return;
+    if (!demi_events_note(w)) demi_events_fail(w);
 }
 /* Order in which contacts are passed on: those that begin, then those that end; by time, which
    differs only after a call that computes forces between two steps; by ids. */
@@ -586,7 +619,9 @@ DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) 
     if (!desc->function) w->events.n.pending = 0;
     if (w->events.n.on) return DEM_OK;
     demi_events_start(w);
-    return DEM_OK;
+    if (!w->events.failed) return DEM_OK;
+    w->events.failed = 0;
+    return demi_no_memory(w, __func__);
 }
 DEM_API dem_result dem_events_stop(dem_world *w) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
