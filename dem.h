@@ -3032,7 +3032,7 @@ typedef struct dem_contact_info {
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
 /* Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a
    pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all;
-   impulses: 14); vectors as seen from a. Values that the function writes there count from the
+   impulses: 17); vectors as seen from a. Values that the function writes there count from the
    next step on. */
 typedef void (*dem_contact_fn)(const dem_contact_info *contact, dem_real *memory, void *user);
 /* Calls `fn` for every contact, those with walls included, and returns their number. With a law
@@ -4576,8 +4576,9 @@ static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was remove
    that is a vector component; traits; functions, see demi_response_row (0: none needed).
    The history with impulses is: friction force and moment (vectors); the normal force and the part
    of it that cohesion takes, N; the normal velocity after the step and the velocity that was
-   reversed, m/s (see demi_impulse_turns); 1 if the contact slides, else 0; and the normal for which
-   the force was solved (a vector). */
+   reversed, m/s (see demi_impulse_turns); 1 if the contact slides, else 0; the normal for which the
+   force was solved (a vector); and what the coming step will lose by it along the normal, by slip
+   and by rolling, J. */
 enum {
     DEMI_LAWS = 1,                 /* contact laws give the force of each contact */
     DEMI_LASTING = 2,              /* contacts have a duration, which limits the time step */
@@ -4587,7 +4588,8 @@ enum {
                                       speeds */
     DEMI_JOINTED = 32              /* joints and motors act */
 };
-enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_NORMAL = 11, DEMI_IMPULSE_REALS = 14 };
+enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_NORMAL = 11, DEMI_IMPULSE_LOST = 14,
+       DEMI_IMPULSE_REALS = 17 };
 #define DEMI_RESPONSES(X) \
     X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
       demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \
@@ -12634,10 +12636,69 @@ static void demi_join_unite(demi_join *j, int32_t a, int32_t b) {
     j->mark[DEMI_MIN(a, b)] |= j->mark[DEMI_MAX(a, b)] & (DEMI_JOIN_OPEN | DEMI_JOIN_ANCHORED);
     j->root[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
 }
-/* Marks the connected facets of a wall as open unless they bound a volume, that is unless at each
-   side as many facets run in one direction as in the other. */
-static void demi_join_open(demi_join *j) {
-    int i, k, m, end;
+/* A facet at a side: its angle about the side, rad, and whether the volume that it bounds begins
+   there (1) or ends (0). */
+typedef struct demi_leaf { double at; int facet, begins; } demi_leaf;
+enum { DEMI_LEAVES = 64 };
+/* Fills in a leaf. Where a volume ends as another one begins, as where boxes stand side by side, the
+   end comes first. inside: the facets of the wall face their volume. */
+static demi_leaf demi_leaf_of(const demi_join *j, const demi_side *s, int inside) {
+    const int32_t *f = j->facet + 5*s->facet;
+    const demi_d3 o = demi_d3_at(j->x + 3*s->lo);
+    const demi_d3 e = j->per == 2 ? demi_d(0, 0, 1)
+        : demi_d3_unit(demi_d3_sub(demi_d3_at(j->x + 3*s->hi), o));
+    const demi_d3 u = j->per == 2 ? demi_d(1, 0, 0) : demi_d3_of(demi_across(demi_d3_real(e)));
+    const int32_t tip = f[j->per == 2 ? 1 - s->side : (s->side + 2)%3];
+    const demi_d3 d = demi_d3_sub(demi_d3_at(j->x + 3*tip), o);
+    const double x = demi_d3_dot(u, d), y = demi_d3_dot(demi_d3_cross(e, u), d);
+    const double slack = 1e-6 + 4*j->near_by[tip]/sqrt(x*x + y*y + 1e-300);
+    demi_leaf leaf;
+    leaf.facet = s->facet;
+    leaf.begins = (demi_join_sign(j, s) > 0) == (j->per == 2 ? !inside : inside);
+    leaf.at = atan2(y, x) + (leaf.begins ? 1 : -1)*DEMI_MIN(slack, 1e-3);
+    if (leaf.at < 0) leaf.at += 2*DEMI_PI;
+    return leaf;
+}
+/* Unites the facets of one wall at a side that bound the same volume there: around the side, the
+   facet where it begins and the one where it ends. count: of the sides s, which may be of other
+   walls, too. */
+static void demi_join_around(demi_join *j, const demi_side *s, int count, int wall, int inside) {
+    demi_leaf leaf[DEMI_LEAVES];
+    int stack[DEMI_LEAVES], depth = 0, n = 0, i, k, first = -1;
+    for (i = 0; i < count; i++) {
+        demi_leaf one;
+        if (j->facet[5*s[i].facet + 3] != wall) continue;
+        if (first < 0) first = s[i].facet;
+        if (n == DEMI_LEAVES) {                 /* too many: one volume */
+            for (k = 0; k < n; k++) demi_join_unite(j, first, leaf[k].facet);
+            demi_join_unite(j, first, s[i].facet);
+            continue;
+        }
+        one = demi_leaf_of(j, s + i, inside);
+        for (k = n++; k > 0 && leaf[k - 1].at > one.at; k--) leaf[k] = leaf[k - 1];
+        leaf[k] = one;
+    }
+    for (i = 0; i < 2*n; i++) {                 /* as parentheses match, around the side */
+        const demi_leaf *at = leaf + i%n;
+        if (at->begins && i < n) stack[depth++] = at->facet;
+        else if (!at->begins && depth) demi_join_unite(j, stack[--depth], at->facet);
+    }
+}
+/* Twice the area, or six times the volume, that a facet adds to what its wall bounds. */
+static double demi_join_bounds(const demi_join *j, const int32_t *f, const int32_t *about) {
+    const demi_d3 o = demi_d3_at(j->x + 3*about[0]);
+    const demi_d3 a = demi_d3_sub(demi_d3_at(j->x + 3*f[0]), o);
+    const demi_d3 b = demi_d3_sub(demi_d3_at(j->x + 3*f[1]), o), n = demi_d3_cross(a, b);
+    return j->per == 2 ? demi_d3_dot(n, demi_d(0, 0, 1))
+        : demi_d3_dot(n, demi_d3_sub(demi_d3_at(j->x + 3*f[2]), o));
+}
+/* Divides the facets of a wall into shells that bound one volume each. Connected facets are open,
+   and no shell, unless at each side as many of them run in one direction as in the other. Returns 0
+   if memory ran out. */
+static int demi_join_volumes(dem_world *w, demi_join *j) {
+    double *bounds = (double *)demi_alloc(w, (size_t)j->facets, sizeof *bounds);
+    int i, k, m, end, many = 0;
+    if (!bounds) return 0;
     for (i = 0; i < j->facets; i++) { j->root[i] = i; j->mark[i] = 0; }
     for (i = 0; i < j->sides; i = end) {
         end = demi_sides_end(j->side, j->sides, i);
@@ -12651,12 +12712,29 @@ static void demi_join_open(demi_join *j) {
             }
             if (sum) j->mark[demi_join_root(j, j->side[k].facet)] |= DEMI_JOIN_OPEN;
         }
+        many |= end - i > 2;
     }
     for (i = 0; i < j->facets; i++) {
-        j->facet[5*i + 4] = demi_join_root(j, i);
-        j->mark[i] |= j->mark[j->facet[5*i + 4]] & DEMI_JOIN_OPEN;
-        if (j->mark[i]) j->facet[5*i + 4] = -1;
+        int32_t *f = j->facet + 5*i;
+        f[4] = demi_join_root(j, i);
+        j->mark[i] |= j->mark[f[4]] & DEMI_JOIN_OPEN;
+        bounds[i] = 0;
+        bounds[f[4]] += demi_join_bounds(j, f, j->facet + 5*f[4]);
     }
+    for (i = 0; i < j->facets && many; i++) j->root[i] = i;
+    for (i = 0; i < j->sides && many; i = end) {
+        end = demi_sides_end(j->side, j->sides, i);
+        for (k = i; k < end; k++) {
+            const int f = j->side[k].facet, wall = j->facet[5*f + 3];
+            for (m = i; m < k && j->facet[5*j->side[m].facet + 3] != wall; m++) continue;
+            if (m == k && !(j->mark[f] & DEMI_JOIN_OPEN))
+                demi_join_around(j, j->side + i, end - i, wall, bounds[j->facet[5*f + 4]] < 0);
+        }
+    }
+    for (i = 0; i < j->facets; i++)
+        j->facet[5*i + 4] = j->mark[i] & DEMI_JOIN_OPEN ? -1 : demi_join_root(j, i);
+    demi_free(w, bounds);
+    return 1;
 }
 /* True if a facet lies in a plane that is a wall of this group, and grains may touch its upper
    side: the plane then acts alone. */
@@ -12686,12 +12764,13 @@ static int demi_facet_turn(const int32_t *f, int per) {
 /* Of facets that coincide, keeps the first. Where the boundaries of two closed bodies coincide with
    opposite orientations, as where two boxes stand side by side, nothing remains: there is no
    surface between them. A patch of such pairs counts only if at some side of it two other facets
-   continue the surface. So a sheet that is given twice, in either winding, remains. */
-static void demi_join_double(const dem_world *w, demi_join *j) {
+   continue the surface. So a sheet that is given twice, in either winding, remains. Returns 0
+   if memory ran out. */
+static int demi_join_double(dem_world *w, demi_join *j) {
     demi_side *s = j->side;
     int i, k, m, end, left;
     demi_join_sides(j);
-    demi_join_open(j);
+    if (!demi_join_volumes(w, j)) return 0;
     for (i = 0; i < j->facets; i++) {           /* facets by their corners */
         const int32_t *f = j->facet + 5*i, last = j->per == 3 ? f[2] : f[1];
         const int32_t lo = DEMI_MIN(f[0], DEMI_MIN(f[1], last));
@@ -12732,6 +12811,7 @@ static void demi_join_double(const dem_world *w, demi_join *j) {
     }
     j->changed |= left < j->facets;
     j->facets = left;
+    return 1;
 }
 
 /* --- facets in one plane that cover each other --- */
@@ -13519,7 +13599,7 @@ DEM_INLINE int demi_surface_wall(const dem_world *w, const demi_wall *surface, i
 /* Makes one surface of the facets: none coincide or cover each other, and none has corners of
    others on its sides. Flat neighbours are merged. Returns 0 if memory ran out. */
 static int demi_join_resolve(dem_world *w, demi_join *j) {
-    demi_join_double(w, j);
+    if (!demi_join_double(w, j)) return 0;
     if (!j->facets) return 1;                   /* all lie in planes */
     if (j->per == 3)
         return demi_join_cover(w, j) && demi_join_divide(w, j) &&
@@ -13528,8 +13608,7 @@ static int demi_join_resolve(dem_world *w, demi_join *j) {
         !demi_grow(w, DEMI_LOOSE, &j->mark, 1, (size_t)j->facets) ||
         !demi_grow(w, DEMI_LOOSE, &j->side, sizeof(demi_side), 3*(size_t)j->facets) ||
         !demi_grow(w, DEMI_LOOSE, &j->root, sizeof(int32_t), (size_t)j->facets)) return 0;
-    demi_join_double(w, j);
-    return 1;
+    return demi_join_double(w, j);
 }
 /* True if a plane is in the place of an earlier one that moves with it. */
 static int demi_plane_again(const dem_world *w, int wall) {
@@ -24559,8 +24638,8 @@ typedef struct demi_knot {
     int32_t group;                 /* a node of its group of connected nodes, at the end the root;
                                       the root has the values of the group: */
     int32_t guarded, open;         /* level of the energy guard, 0 to 2, see demi_joints_guard; bit
-                                      0: some joint has a gap beyond `closed`, bit 1: since the user
-                                      moved a body */
+                                      0: some joint has a gap beyond `closed`, bit 1: some has one
+                                      since the user moved a body */
     int32_t excess, grounded;      /* joints minus bodies; 1: a joint to a wall, space or a fixed
                                       body */
     double work, bank, kinetic;    /* J: work of its joints; energy that they have absorbed; kinetic
@@ -24578,8 +24657,8 @@ typedef struct demi_link_of { int32_t to, next; } demi_link_of;
 /* DEMI_GIVE: softness of joints over the inverse effective mass. DEMI_GIVE_LOOPS: the same in
    loops, whose rows may be redundant; its square is above round-off, so pivots that small do no
    harm. DEMI_JOINED: tolerance for the gap of a joint, in smallest radii. DEMI_BANKED: part of the
-   kinetic energy that joints may return after they have absorbed it. DEMI_EVEN: part of the
-   impulses of joints that may close gaps. */
+   kinetic energy that joints may return after they have absorbed it.
+   DEMI_EVEN: part of the impulses of joints that may close gaps. */
 #define DEMI_GIVE (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-9))
 #define DEMI_GIVE_LOOPS DEM_R(1e-6)
 #define DEMI_JOINED (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-8))
@@ -25562,7 +25641,7 @@ static double demi_rod_closed(const dem_world *w, const demi_rod *r) {
             far = DEMI_MAX(far, demi_length(demi_at(w->bodies.pos + 4*body)));
     }
     return DEMI_MAX(DEMI_EVEN*(double)(pull*s->dt),
-                    8*(DEMI_SINGLE ? FLT_EPSILON : DBL_EPSILON)*(double)far);
+                    (double)(8*(DEMI_SINGLE ? DEM_R(FLT_EPSILON) : DEM_R(DBL_EPSILON))*far));
 }
 /* Sets up all joints of this step: solver bodies of walls and space, rows, velocities before the
    step, and the energies and gaps of each group for the energy guard. A group with a gap begins at
@@ -26660,12 +26739,11 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
         const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
         const dem_vec3 u = demi_scale(demi_add(demi_impulse_before(w, c), after), DEM_R(0.5));
-        const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
+        const dem_real all[DEMI_IMPULSE_LOST] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
             moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per,
             demi_dot(after, c->normal), s->beside[m->at].turns,
             demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride]),
             c->normal.x, c->normal.y, c->normal.z};
-        for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
         part[0] = -(double)demi_dot(demi_sub(p, c->slip), u);
         part[1] = -(double)demi_dot(c->slip, u);
         if (s->twisted) {
@@ -26675,6 +26753,9 @@ static void demi_impulses_tell(dem_world *w, int d) {
                                          demi_at(w->bodies.spin + 4*m->a));
             part[2] = -(double)demi_dot(moment, demi_sub(wb, wa))/2;
         }
+        for (e = 0; e < DEMI_IMPULSE_LOST; e++) memory[(size_t)e*o.stride] = all[e];
+        for (; e < DEMI_IMPULSE_REALS; e++)
+            memory[(size_t)e*o.stride] = (dem_real)part[e - DEMI_IMPULSE_LOST];
         lost[DEMI_E_DASHPOT] += part[0];
         lost[DEMI_E_SLIDE] += part[1];
         lost[DEMI_E_ROLL] += part[2];
@@ -31622,12 +31703,11 @@ static void demi_events_switch(dem_world *w, int on) {
         demi_kernel_choose(demi_member(w, k));
     }
 }
-/* Begins a recording. */
-static void demi_events_start(dem_world *w) {
+/* Ends a recording for lack of memory; demi_events_tell reports it. */
+static void demi_events_fail(dem_world *w) {
     demi_events_clear(w);
-    w->events.n.fresh = 1;
-    w->events.n.since = w->clock.time;
-    demi_events_switch(w, 1);
+    demi_events_switch(w, 0);
+    w->events.failed = 1;
 }
 /* Takes over the contacts that work group d of member m has noted. count: notes taken before, and
    afterwards with these; *next: as for demi_event_find. Returns 0 if memory ran out. */
@@ -31685,10 +31765,44 @@ static void demi_events_take(dem_world *w) {
     for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--)
         ok = demi_event_end(w, i);
     e->n.fresh = 0;
-    if (ok) return;
+    if (!ok) demi_events_fail(w);
+}
+/* Impulses: notes the present contacts, whose losses the coming step will book, from their
+   histories. Returns 0 if memory ran out. */
+static int demi_events_note(dem_world *w) {
+    demi_walk c = demi_walk_begin();
+    if (!demi_events_room(w) || !demi_notes_room(w)) return 0;
+    while (demi_walk_next(w, &c)) {
+        const size_t step = c.own ? 1 : (size_t)w->near.stride;
+        const dem_real *y = c.own ? c.own->memory
+            : w->near.memory + (size_t)c.d*DEMI_IMPULSE_REALS*step + c.entry;
+        const dem_real *lost = y + DEMI_IMPULSE_LOST*step;
+        const dem_real ra = w->bodies.pos[4*c.a + 3];
+        const int wall = c.b < 0;
+        double energy[DEMI_E_ROLL + 1] = {0};
+        demi_noted_at *at;
+        energy[DEMI_E_DASHPOT] = (double)lost[0];
+        energy[DEMI_E_SLIDE] = energy[DEMI_E_SHEAR_WORK] = (double)lost[step];
+        energy[DEMI_E_ROLL] = (double)lost[2*step];
+        at = demi_note(w, c.d, c.a, wall ? -1 - c.own->wall : c.b, DEMI_NOTED_OLD, 0, y[6*step],
+                       energy);
+        if (!at) continue;
+        at->normal = c.info.normal;
+        at->arm = c.own ? c.own->arm_a
+            : demi_note_arm(at->normal, ra, demi_length(c.branch), ra + w->bodies.pos[4*c.b + 3]);
+        at->shift = wall ? c.own->shift : demi_v(0, 0, 0);
+    }
+    demi_events_take(w);
+    return 1;
+}
+/* Begins a recording. */
+static void demi_events_start(dem_world *w) {
     demi_events_clear(w);
-    demi_events_switch(w, 0);
-    e->failed = 1;
+    w->events.n.fresh = 1;
+    w->events.n.since = w->clock.time;
+    demi_events_switch(w, 1);
+    if (demi_response_is(w, DEMI_LASTING) || !w->stage.list_valid || !w->stage.forces_valid) return;
+    if (!demi_events_note(w)) demi_events_fail(w);
 }
 /* Order in which contacts are passed on: those that begin, then those that end; by time, which
    differs only after a call that computes forces between two steps; by ids. */
@@ -31746,7 +31860,9 @@ DEM_API dem_result dem_events_record(dem_world *w, const dem_events_desc *desc) 
     if (!desc->function) w->events.n.pending = 0;
     if (w->events.n.on) return DEM_OK;
     demi_events_start(w);
-    return DEM_OK;
+    if (!w->events.failed) return DEM_OK;
+    w->events.failed = 0;
+    return demi_no_memory(w, __func__);
 }
 DEM_API dem_result dem_events_stop(dem_world *w) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;

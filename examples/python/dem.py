@@ -3860,7 +3860,7 @@ def _wrap_dem_contact_fn(function, context, struct):
 
 
 ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ctypes.POINTER(Real), ctypes.c_void_p)
-ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all; impulses: 14); vectors as seen from a. Values that the function writes there count from the next step on.'
+ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all; impulses: 17); vectors as seen from a. Values that the function writes there count from the next step on.'
 
 
 structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Group, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, ContactRows, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, Selection, BodiesMeans, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, RailDesc, RailState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, CellDesc, CellState, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Event, EventsDesc, Impacts, Wear, Servo, Stress, FieldDesc, FieldData, FieldCell, BodyMeans, MixingDesc, Mixing, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]

@@ -159,8 +159,8 @@ typedef struct demi_knot {
     int32_t group;                 /* a node of its group of connected nodes, at the end the root;
                                       the root has the values of the group: */
     int32_t guarded, open;         /* level of the energy guard, 0 to 2, see demi_joints_guard; bit
-                                      0: some joint has a gap beyond `closed`, bit 1: since the user
-                                      moved a body */
+                                      0: some joint has a gap beyond `closed`, bit 1: some has one
+                                      since the user moved a body */
     int32_t excess, grounded;      /* joints minus bodies; 1: a joint to a wall, space or a fixed
                                       body */
     double work, bank, kinetic;    /* J: work of its joints; energy that they have absorbed; kinetic
@@ -178,8 +178,8 @@ typedef struct demi_link_of { int32_t to, next; } demi_link_of;
 /* DEMI_GIVE: softness of joints over the inverse effective mass. DEMI_GIVE_LOOPS: the same in
    loops, whose rows may be redundant; its square is above round-off, so pivots that small do no
    harm. DEMI_JOINED: tolerance for the gap of a joint, in smallest radii. DEMI_BANKED: part of the
-   kinetic energy that joints may return after they have absorbed it. DEMI_EVEN: part of the
-   impulses of joints that may close gaps. */
+   kinetic energy that joints may return after they have absorbed it.
+   DEMI_EVEN: part of the impulses of joints that may close gaps. */
 #define DEMI_GIVE (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-9))
 #define DEMI_GIVE_LOOPS DEM_R(1e-6)
 #define DEMI_JOINED (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-8))

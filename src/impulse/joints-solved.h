@@ -455,7 +455,7 @@ static double demi_rod_closed(const dem_world *w, const demi_rod *r) {
             far = DEMI_MAX(far, demi_length(demi_at(w->bodies.pos + 4*body)));
     }
     return DEMI_MAX(DEMI_EVEN*(double)(pull*s->dt),
-                    8*(DEMI_SINGLE ? FLT_EPSILON : DBL_EPSILON)*(double)far);
+                    (double)(8*(DEMI_SINGLE ? DEM_R(FLT_EPSILON) : DEM_R(DBL_EPSILON))*far));
 }
 /* Sets up all joints of this step: solver bodies of walls and space, rows, velocities before the
    step, and the energies and gaps of each group for the energy guard. A group with a gap begins at
