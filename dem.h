@@ -12640,7 +12640,7 @@ static void demi_join_unite(demi_join *j, int32_t a, int32_t b) {
    there (1) or ends (0). */
 typedef struct demi_leaf { double at; int facet, begins; } demi_leaf;
 enum { DEMI_LEAVES = 64 };
-/* Fills in a leaf. Where a volume ends as another one begins, as where boxes stand side by side, the
+/* Fills in a leaf. Where a volume ends as another one begins, as between boxes side by side, the
    end comes first. inside: the facets of the wall face their volume. */
 static demi_leaf demi_leaf_of(const demi_join *j, const demi_side *s, int inside) {
     const int32_t *f = j->facet + 5*s->facet;
