@@ -258,7 +258,8 @@ DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 /* The same for a world that differs from the one that wrote the file. allowed: words, each the name
    of a field of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all
-   but density) or "pairs"; "" allows nothing. Fields named there keep the values of this world.
+   but density, and the pairs that are mixtures of them) or "pairs" (also those of dem_pair_set); ""
+   allows nothing. Fields named there keep the values of this world.
    Everything else must agree; domain, boundary, planar, thickness, response, body_reals,
    law_memory_names, groups, shapes, walls, fields, feeds and outlets always. Contact histories are
    converted where a law is the same, and begin at 0 if a law is user-defined and `law`,

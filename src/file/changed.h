@@ -16,8 +16,8 @@ typedef struct demi_changes {
     const char *allowed;           /* words */
     const dem_world *own;          /* copy of the world struct before the restart: its descs and
                                       materials */
-    int materials;                 /* 1: materials may differ */
-    demi_pair *pairs;              /* copy of its pairs; null unless they may differ */
+    int materials, paired;         /* 1: materials may differ; 1: pairs of materials may */
+    demi_pair *pairs;              /* copy of its pairs; null if both are 0 */
     char said[512];
     int laws;                      /* 1: user-defined laws or their history differ */
     int ledger, growth;            /* 1: the file has an account of energy; its bodies grow */
@@ -74,6 +74,16 @@ static void demi_change_put(const demi_field_row *r, void *item, const char *the
     if (set) memcpy((char *)item + r->offset, &fn, sizeof fn);
     else memset((char *)item + r->offset, 0, sizeof fn);
 }
+/* True if the value of a pair, number i of the scene's pairs, is a mixture here and in the file, so
+   that it follows from the materials, which are those of the file. */
+static int demi_change_mixed(const dem_world *w, int i, const demi_field_row *r,
+                             const char *there) {
+    const int n = w->material_count, a = DEMI_MIN(i/n, i%n), b = DEMI_MAX(i/n, i%n);
+    const dem_pair mix = demi_mix(&w->materials[a], &w->materials[b]);
+    char value[DEMI_ROW_MOST];
+    demi_row_value(r, &mix, value);
+    return !w->pairs[a*DEMI_MATERIALS + b].own && !memcmp(value, there, r->size);
+}
 /* Compares the descs, materials and pairs in the file with those of the world. Where they differ
    and may, the world takes the value of the file. What may not differ stays, and reading fails. */
 static void demi_changes_take(dem_world *w, demi_changes *c, demi_stream *s) {
@@ -88,13 +98,16 @@ static void demi_changes_take(dem_world *w, demi_changes *c, demi_stream *s) {
                 const int n = w->material_count;
                 const int may = part == 0 ? demi_may_change(r) &&
                     demi_word_in(c->allowed, r->name, strlen(r->name))
-                    : part == 1 ? c->materials && strcmp(r->name, "density") : c->pairs != 0;
+                    : part == 1 ? c->materials && strcmp(r->name, "density") : c->paired;
                 void *item = part == 0 ? (void *)&w->asked : part == 1 ? (void *)&w->materials[i]
                     : (void *)&w->pairs[i/n*DEMI_MATERIALS + i%n].given;
                 if (r->how & DEMI_FREE) continue;
                 demi_row_value(r, item, here);
                 demi_visit(s, there, r->size);
-                if (s->cut || !may || !memcmp(here, there, r->size)) continue;
+                if (s->cut || !memcmp(here, there, r->size)) continue;
+                if (!may && part == 2 && c->materials && demi_change_mixed(w, i, r, there))
+                    demi_change_put(r, item, there);
+                if (!may) continue;
                 *of = 0;
                 if (part == 1) snprintf(of, sizeof of, " of material %d", i + 1);
                 if (part == 2)
@@ -191,7 +204,8 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     c.allowed = allowed;
     c.own = &own;
     c.materials = demi_word_in(allowed, "materials", 9);
-    if (result == DEM_OK && demi_word_in(allowed, "pairs", 5)) {
+    c.paired = demi_word_in(allowed, "pairs", 5);
+    if (result == DEM_OK && (c.materials || c.paired)) {
         c.pairs = (demi_pair *)demi_alloc(w, 1, pairs);
         if (c.pairs) memcpy(c.pairs, w->pairs, pairs);
         else result = demi_no_memory(w, __func__);

@@ -216,6 +216,43 @@ int main(int argc, char **argv) {
         dem_world_destroy(fresh);
         dem_world_destroy(old);
     }
+    TEST("a restart with other materials mixes their pairs again, and pairs of dem_pair_set stay") {
+        enum { HERE = 1, THERE = 2 };           /* which world has called dem_pair_set */
+        static const struct { int set; const char *allowed; dem_result result; double expected; } rows[] = {
+            {0, "materials", DEM_OK, 0.2}, {HERE | THERE, "materials", DEM_OK, 0.7},
+            {HERE, "materials", DEM_ERROR_FORMAT, 0.7}, {THERE, "materials", DEM_ERROR_FORMAT, 0.2},
+            {THERE, "materials pairs", DEM_OK, 0.2}, {0, "pairs", DEM_ERROR_FORMAT, 0.2}};
+        int k, response, side;
+        for (response = 0; response < 2; response++)
+            for (k = 0; k < 6; k++) {
+                dem_world_desc desc = settings(response ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS);
+                dem_world *world[2];
+                dem_material other = {2}, first = {1};
+                dem_pair pair;
+                for (side = 0; side < 2; side++) {      /* there, here */
+                    world[side] = trough(&desc, side ? 0.2 : 0.4);
+                    other = scene_material(world[side], 1e6, 0.5, side ? 0.2 : 0.4, 0);
+                    dem_sphere_add(world[side], other, DEM_R(2e-3), at(0.02, 0.015, 0.05));
+                    if (!(rows[k].set & (side ? HERE : THERE))) continue;
+                    CHECK_EQ(dem_pair_get(world[side], first, other, &pair), DEM_OK);
+                    pair.friction = DEM_R(0.7);
+                    pair.friction_static = 0;
+                    CHECK_EQ(dem_pair_set(world[side], first, other, &pair), DEM_OK);
+                }
+                must(world[0], dem_world_step(world[0], 50));
+                must(world[0], dem_checkpoint_write(world[0], saved));
+                CHECK_EQ(dem_checkpoint_read_changed(world[1], saved, rows[k].allowed), rows[k].result);
+                if (rows[k].result != DEM_OK)
+                    CHECK_STR(dem_world_error_get(world[1]), rows[k].set ? "(dem_pair_set) of materials 1 and 2"
+                                                                         : "friction 0.4 of material 1,");
+                CHECK_EQ(dem_pair_get(world[1], first, other, &pair), DEM_OK);
+                CHECK_NEAR(pair.friction, rows[k].expected, 1e-7);
+                CHECK_EQ(dem_pair_get(world[1], first, first, &pair), DEM_OK);
+                CHECK_NEAR(pair.friction, 0.2, 1e-7);
+                must(world[1], dem_world_step(world[1], 50));
+                for (side = 0; side < 2; side++) dem_world_destroy(world[side]);
+            }
+    }
     TEST("a restart of impulses may change the solver, and one without changes continues bit for bit") {
         dem_world_desc desc = settings(DEM_RESPONSE_IMPULSES);
         dem_world *old = trough(&desc, 0.4), *fresh = trough(&desc, 0.4);
