@@ -23,6 +23,7 @@
      >>implementation - private code from here on; users need not read it
      core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
+       >>printing          text with a decimal point in every locale
        >>maths             vectors, poses, random numbers
        >>layout            data structures: lists, contacts, walls, feeds, joints
        >>state             the state of a world
@@ -3584,7 +3585,8 @@ DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 /* The same for a world that differs from the one that wrote the file. allowed: words, each the name
    of a field of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all
-   but density) or "pairs"; "" allows nothing. Fields named there keep the values of this world.
+   but density, and the pairs that are mixtures of them) or "pairs" (also those of dem_pair_set); ""
+   allows nothing. Fields named there keep the values of this world.
    Everything else must agree; domain, boundary, planar, thickness, response, body_reals,
    law_memory_names, groups, shapes, walls, fields, feeds and outlets always. Contact histories are
    converted where a law is the same, and begin at 0 if a law is user-defined and `law`,
@@ -3986,6 +3988,100 @@ static double demi_clock(void) {                          /* wall time, s; for p
 #else
     return (double)clock()/CLOCKS_PER_SEC;
 #endif
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>printing
+   Formatted text with a decimal point in every locale: error messages, reports, progress lines.
+   printf takes the decimal mark of the locale, which the program that includes dem.h may have set.
+   Numbers in files are written by demi_format_real.
+   Tests: tests/core/test_printing.c.
+   --------------------------------------------------------------------------------------------- */
+/* Where text goes: `file`, or if that is null `to`, which has room for `room` bytes. n: bytes so
+   far, also those without room. */
+typedef struct demi_ink { FILE *file; char *to; size_t room; int n; } demi_ink;
+#define DEMI_INK(x) \
+    o->n += o->file ? fprintf(o->file, how, x) \
+        : snprintf(o->to + o->n, (size_t)o->n < o->room ? o->room - (size_t)o->n : 0, how, x)
+/* Prints a number with the format `how`, which has no other conversion. */
+static void demi_ink_real(demi_ink *o, const char *how, double x) {
+    char text[512];
+    size_t k = 0, mark;
+    snprintf(text, sizeof text, how, x);
+    k = strspn(text, " 0123456789+-.einfaINFAE");
+    mark = strcspn(text + k, "0123456789e");
+    if (mark) {
+        text[k] = '.';
+        memmove(text + k + 1, text + k + mark, strlen(text + k + mark) + 1);
+    }
+    how = "%s";
+    DEMI_INK(text);
+}
+/* Prints as vfprintf: the conversions d, i, u, x, c, s, e, f, g and %, the lengths l, ll and z,
+   flags, and a width and precision, which may be *. */
+static void demi_ink_all(demi_ink *o, const char *format, va_list args) DEMI_FORMAT(2, 0);
+static void demi_ink_all(demi_ink *o, const char *format, va_list args) {
+    char how[64];
+    while (*format) {
+        size_t n = 0, longs = 0, size = 0;
+        if (*format != '%' || format[1] == '%') {
+            const int plain = *format == '%' ? 1 : (int)strcspn(format, "%");
+            const char *text = format;
+            format += *format == '%' ? 2 : plain;
+            if (o->file) o->n += fprintf(o->file, "%.*s", plain, text);
+            else o->n += snprintf(o->to + o->n, (size_t)o->n < o->room
+                                  ? o->room - (size_t)o->n : 0, "%.*s", plain, text);
+            continue;
+        }
+        do {
+            if (*format == '*') n += (size_t)snprintf(how + n, 12, "%d", va_arg(args, int));
+            else how[n++] = *format;
+            longs += *format == 'l';
+            size += *format++ == 'z';
+        } while (n < 50 && *format && !strchr("diuxcsefg", format[-1]));
+        how[n] = 0;
+        switch (format[-1]) {
+        case 's': DEMI_INK(va_arg(args, const char *)); break;
+        case 'e': case 'f': case 'g': demi_ink_real(o, how, va_arg(args, double)); break;
+        case 'u': case 'x':
+            if (size) DEMI_INK(va_arg(args, size_t));
+            else if (longs > 1) DEMI_INK(va_arg(args, unsigned long long));
+            else if (longs) DEMI_INK(va_arg(args, unsigned long));
+            else DEMI_INK(va_arg(args, unsigned));
+            break;
+        default:
+            if (longs > 1) DEMI_INK(va_arg(args, long long));
+            else if (longs) DEMI_INK(va_arg(args, long));
+            else DEMI_INK(va_arg(args, int));
+        }
+    }
+}
+/* Prints to a file, as fprintf. */
+static void demi_print(FILE *file, const char *format, ...) DEMI_FORMAT(2, 3);
+static void demi_print(FILE *file, const char *format, ...) {
+    demi_ink o = {file, 0, 0, 0};
+    va_list args;
+    va_start(args, format);
+    demi_ink_all(&o, format, args);
+    va_end(args);
+}
+/* Prints to `to`, as vsnprintf and snprintf. Return the length of the whole text. */
+static int demi_words_of(char *to, size_t room, const char *format,
+                         va_list args) DEMI_FORMAT(3, 0);
+static int demi_words_of(char *to, size_t room, const char *format, va_list args) {
+    demi_ink o = {0, to, room, 0};
+    if (room) *to = 0;
+    demi_ink_all(&o, format, args);
+    return o.n;
+}
+static int demi_words(char *to, size_t room, const char *format, ...) DEMI_FORMAT(3, 4);
+static int demi_words(char *to, size_t room, const char *format, ...) {
+    va_list args;
+    int n;
+    va_start(args, format);
+    n = demi_words_of(to, room, format, args);
+    va_end(args);
+    return n;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -5550,8 +5646,8 @@ static void demi_tell(dem_world *w, const char *call, const char *format, va_lis
     #pragma omp critical(demi_fail)             /* laws may fail on several threads at once */
 #endif
     {
-        const int n = call ? snprintf(w->error, sizeof w->error, "%s: ", call) : 0;
-        vsnprintf(w->error + n, sizeof w->error - (size_t)n, format, args);
+        const int n = call ? demi_words(w->error, sizeof w->error, "%s: ", call) : 0;
+        demi_words_of(w->error + n, sizeof w->error - (size_t)n, format, args);
         demi_refused_note(w, strcspn(w->error, ":"));
     }
 }
@@ -5586,7 +5682,7 @@ static void demi_built(dem_world *w, const char *call) {
     memmove(w->refused_calls[k], w->refused_calls[k + 1],
             (size_t)(--w->refused - k)*sizeof *w->refused_calls);
     if (!w->refused || strncmp(w->refusal, call, n) || w->refusal[n] != ':') return;
-    snprintf(w->refusal, sizeof w->refusal, "%s: failed as well", w->refused_calls[0]);
+    demi_words(w->refusal, sizeof w->refusal, "%s: failed as well", w->refused_calls[0]);
 }
 /* Fails before a run if a call that builds the scene failed and its message has not been read.
    Otherwise an incomplete scene would run and return DEM_OK. */
@@ -5868,12 +5964,12 @@ static dem_result demi_rows_check(dem_world *w, const char *call, const demi_fie
     if (!r) return DEM_OK;
     gap = *r->unit ? " " : "";
     if (r->other > 0)
-        snprintf(least, sizeof least, "%s (%g%s%s)", r[-r->other].name,
-                 demi_row_read(r - r->other, item, 0), gap, r->unit);
-    else snprintf(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0, gap, r->unit);
-    if (r->words && r->type != 'e') snprintf(words, sizeof words, ", %s,", r->words);
+        demi_words(least, sizeof least, "%s (%g%s%s)", r[-r->other].name,
+                   demi_row_read(r - r->other, item, 0), gap, r->unit);
+    else demi_words(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0, gap, r->unit);
+    if (r->words && r->type != 'e') demi_words(words, sizeof words, ", %s,", r->words);
     if (demi_row_most(r) < DBL_MAX)
-        snprintf(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
+        demi_words(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
     return demi_refuse(w, call, "%s%s is %g%s%s, must be %s%s %s%s and %s%s; %s", r->name, of,
                        demi_row_read(r, item, k), gap, r->unit, r->other > 0 ? "0 or " : "",
                        r->how & DEMI_OVER ? ">" : ">=", least, words, most,
@@ -6649,10 +6745,10 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
 /* A column for a coefficient of a single law that some pair has. */
 #define DEMI_PROPERTY_HEAD(PROPERTY, COEFFICIENT, UNIT) \
     if (demi_pairs_have(w, offsetof(dem_pair, PROPERTY))) \
-        fprintf(out, "  " #PROPERTY " [" UNIT "]");
+        demi_print(out, "  " #PROPERTY " [" UNIT "]");
 #define DEMI_PROPERTY_PRINT(PROPERTY, COEFFICIENT, UNIT) \
     if (demi_pairs_have(w, offsetof(dem_pair, PROPERTY))) \
-        fprintf(out, "  %-*.4g", (int)sizeof #PROPERTY " [" UNIT "]" - 1, (double)p->PROPERTY);
+        demi_print(out, "  %-*.4g", (int)sizeof #PROPERTY " [" UNIT "]" - 1, (double)p->PROPERTY);
 static int demi_pairs_have(const dem_world *w, size_t offset) {
     const int n = w->material_count;
     dem_real x = 0;
@@ -6665,23 +6761,23 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
     if (demi_null_look(w, __func__, out, "out")) return;
     const int laws = demi_response_is(w, DEMI_LAWS);
     int i, j;
-    fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
-            "kt/kn%s", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
+    demi_print(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
+               "kt/kn%s", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
     DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_HEAD)
-    fprintf(out, "\n");
+    demi_print(out, "\n");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
-            fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %-6.4g",
+            demi_print(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %-6.4g",
                     i + 1, j + 1, (double)p->young_eff, (double)p->shear_eff,
                     (double)p->restitution, (double)p->friction,
                     (double)DEMI_MAX(p->friction, p->friction_static), (double)p->rolling_friction,
                     (double)p->stiffness, (double)p->stiffness_ratio);
             if (!laws)
-                fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
-                        (double)p->cohesion, (double)p->compliance);
+                demi_print(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
+                           (double)p->cohesion, (double)p->compliance);
             DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_PRINT)
-            fprintf(out, "%s\n", p->ignored ? "  ignored" : "");
+            demi_print(out, "%s\n", p->ignored ? "  ignored" : "");
         }
 }
 
@@ -9512,7 +9608,7 @@ static int demi_shape_strange(const dem_world *w, const demi_wall *wall, const d
 static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall *wall, int number,
                                  int body, int part) {
     char who[32] = "the body";
-    if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
+    if (body >= 0) demi_words(who, sizeof who, "body %d", body + 1);
     return demi_refuse(w, call, "wall %d is a %s and %s a%s %s: %s; nothing was added", number,
                        demi_wall_kinds[wall->kind].name, who, demi_an(demi_shape_rows[part].name),
                        demi_shape_rows[part].name, demi_wall_why(w, wall, part));
@@ -12197,7 +12293,7 @@ static dem_result demi_servo_check(dem_world *w, dem_wall id, const dem_motion *
 /* Checks a motion for the wall with this id, which need not exist yet. */
 static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
     char of[24];
-    snprintf(of, sizeof of, " of wall %d", (int)id.id);
+    demi_words(of, sizeof of, " of wall %d", (int)id.id);
     if (demi_rows_check(w, "dem_wall_motion_set", demi_motion_rows, motion, of,
                         "start from DEM_MOTION")) return DEM_ERROR_ARGUMENT;
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
@@ -14067,7 +14163,7 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     char of[48];
     if (demi_material_index(w, __func__, a, &i) || demi_material_index(w, __func__, b, &j))
         return DEM_ERROR_ARGUMENT;
-    snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
+    demi_words(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
     if (demi_rows_check(w, __func__, demi_pair_rows, p, of,
                         "start from dem_pair_get and change only what differs"))
         return DEM_ERROR_ARGUMENT;
@@ -27061,7 +27157,7 @@ static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why,
     *lo = (double)d->min;
     *hi = (double)d->max;
 #define DEMI_SIZE_NEEDS(good, text, value) \
-    if (!*why && !(good)) snprintf(why, room, text, value)
+    if (!*why && !(good)) demi_words(why, room, text, value)
     DEMI_SIZE_NEEDS((int)d->kind >= 0 && d->kind <= DEM_SIZES_EXPONENTIAL, "kind is %d, must be "
                     "one of the enum values", (int)d->kind);
     DEMI_SIZE_NEEDS(demi_finite(d->min) && *lo >= 0, "min is %g m, must be finite and >= 0", *lo);
@@ -29044,21 +29140,22 @@ static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice 
     out->speed = (dem_real)speed;
     out->rayleigh = (dem_real)(rayleigh < 1e300 ? rayleigh : 0);
     if (s.material < 0) {
-        snprintf(out->binds, sizeof out->binds, "no grain that moves");
+        demi_words(out->binds, sizeof out->binds, "no grain that moves");
         s.time = 0;
     } else if (s.wall)
-        snprintf(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d of "
-                 "material %d, at %.3g m/s", s.material + 1, s.radius, s.wall, s.other + 1, speed);
+        demi_words(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d "
+                   "of material %d, at %.3g m/s", s.material + 1, s.radius, s.wall, s.other + 1,
+                     speed);
     else
-        snprintf(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g m, "
-                 "at %.3g m/s", s.material + 1, s.other + 1, s.radius, s.partner, speed);
+        demi_words(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g "
+                   "m, at %.3g m/s", s.material + 1, s.other + 1, s.radius, s.partner, speed);
     out->contact_time = (dem_real)s.time;
     out->dt = (dem_real)DEMI_MIN(s.time/50, s.limit/5);
     out->dt_max = (dem_real)DEMI_MIN(s.time/20, s.limit);
     if (s.time > 0 && s.limit < s.time/20) {
         const size_t n = strlen(out->binds);
-        snprintf(out->binds + n, sizeof out->binds - n, "; stable to %.3g s because of its "
-                 "dashpot, friction or rolling", s.limit);
+        demi_words(out->binds + n, sizeof out->binds - n, "; stable to %.3g s because of its "
+                   "dashpot, friction or rolling", s.limit);
     }
 }
 static void demi_advise(const dem_world *w, dem_advice *out) {
@@ -29495,8 +29592,8 @@ static dem_result demi_speed_check(dem_world *w, double speed) {
             const double v = (double)demi_length(demi_at(bodies->vel + 4*i));
             if (v <= most) continue;
             most = v;
-            snprintf(who, sizeof who, "body %u, the fastest, is at %.3g m/s and",
-                     (unsigned)bodies->slot[i] + 1, v);
+            demi_words(who, sizeof who, "body %u, the fastest, is at %.3g m/s and",
+                       (unsigned)bodies->slot[i] + 1, v);
         }
     }
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
@@ -29532,19 +29629,20 @@ static void demi_held_report(const dem_world *w, FILE *out) {
     const demi_held *h = &w->clock.held;
     char who[64] = "a body";
     if (w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
-    fprintf(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
-            h->from/(double)w->clock.dt, h->from);
+    demi_print(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
+               h->from/(double)w->clock.dt, h->from);
     if (h->body > 0)
-        snprintf(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body, h->contacts);
+        demi_words(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body,
+                   h->contacts);
     if (h->by == DEMI_HELD_PRESSED)
-        fprintf(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
+        demi_print(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
     else if (h->by == DEMI_HELD_RATE)
-        fprintf(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
-                "that is used\n", (int)h->body, h->limit);
+        demi_print(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
+                   "that is used\n", (int)h->body, h->limit);
     else if (h->by == DEMI_HELD_SPIN)
-        fprintf(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
-    else fprintf(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
-                 "used\n", h->limit);
+        demi_print(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
+    else demi_print(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
+                    "used\n", h->limit);
 }
 /* Schedules the next examination of the present contacts: at increasing intervals while the scene
    does not change, at least every 1000 steps. With desc.law_rate at least every eight steps,
@@ -30801,8 +30899,8 @@ static const char *demi_crushed_text(const dem_world *w, char *text, size_t size
     const demi_crushed *c = &w->booked.crushed;
     *text = 0;
     if (c->next > 0)
-        snprintf(text, size, "since t = %.4g s, body %d, %s %d: jammed or too soft", c->since,
-                 (int)c->a, c->b ? "body" : "wall", (int)(c->b ? c->b : c->wall));
+        demi_words(text, size, "since t = %.4g s, body %d, %s %d: jammed or too soft", c->since,
+                   (int)c->a, c->b ? "body" : "wall", (int)(c->b ? c->b : c->wall));
     return text;
 }
 
@@ -33212,12 +33310,13 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     char crushed[128];
     if (line && tenths <= w->look.tenths_told) return 0;
     ((dem_world *)w)->look.tenths_told = tenths;
-    fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
-            100*done, w->clock.time, w->bodies.count, seconds_left);
+    demi_print(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
+               100*done, w->clock.time, w->bodies.count, seconds_left);
     if (w->booked.unsolved)
-        fprintf(out, "%llu steps above the tolerance   ", (unsigned long long)w->booked.unsolved);
+        demi_print(out, "%llu steps above the tolerance   ",
+                   (unsigned long long)w->booked.unsolved);
     if (*demi_crushed_text(w, crushed, sizeof crushed))
-        fprintf(out, "overlap %.2g R %s   ", w->booked.overlap_max, crushed);
+        demi_print(out, "overlap %.2g R %s   ", w->booked.overlap_max, crushed);
     if (line || done >= 1) fputc('\n', out);
     fflush(out);
     return 0;
@@ -34428,8 +34527,8 @@ static dem_result demi_text_corner(const demi_text *t, int count, int back, int3
             return DEM_OK;
         }
     }
-    snprintf(where, sizeof where, "a corner is expected, a whole number from 1 to %d, the number "
-             "of vertices; correct it or export the file again", count);
+    demi_words(where, sizeof where, "a corner is expected, a whole number from 1 to %d, the number "
+               "of vertices; correct it or export the file again", count);
     return demi_text_fail(t, where);
 }
 
@@ -34720,10 +34819,10 @@ static void demi_health_shapes(const dem_mesh *mesh, dem_mesh_health *health) {
                                (dem_real)hi[1], (dem_real)hi[2]);
     for (axis = 0; axis < 3; axis++) extent = fmax(extent, hi[axis] - lo[axis]);
     if (extent > 50 || extent < 1e-3)
-        snprintf(health->hint, sizeof health->hint, "largest extent is %s m: the file may %s; "
-                 "multiply its vertices by %s", demi_format_real(number, extent, 4), extent > 50 ?
-                 "be in millimetres" : "have been scaled to metres twice", extent > 50 ?
-                 "0.001" : "1000");
+        demi_words(health->hint, sizeof health->hint, "largest extent is %s m: the file may %s; "
+                   "multiply its vertices by %s", demi_format_real(number, extent, 4), extent > 50 ?
+                   "be in millimetres" : "have been scaled to metres twice", extent > 50 ?
+                   "0.001" : "1000");
 }
 
 /* Fills in the part that depends on other triangles: edges, duplicates and winding (>>closed). */
@@ -36236,7 +36335,7 @@ static dem_result demi_vtp_head(demi_vtp_in *v, const char *tag, const char *end
     const char *word = demi_attribute(tag, end, "compressor", &size);
     char what[120];
     if (word) {
-        snprintf(what, sizeof what, "is compressed (%.*s)", (int)DEMI_MIN(size, 60), word);
+        demi_words(what, sizeof what, "is compressed (%.*s)", (int)DEMI_MIN(size, 60), word);
         return demi_vtp_fail(v, what);
     }
     v->wide = demi_attribute_is(tag, end, "header_type", "UInt64");
@@ -38018,22 +38117,22 @@ static void demi_row_print(const demi_field_row *r, const char *value, size_t k,
         memcpy(&i, value + 4*k, sizeof i);
         for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
             word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
-        if (word) { snprintf(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
+        if (word) { demi_words(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
         memcpy(&i, value + 4*k, sizeof i);
-        snprintf(out, size, "%ld", (long)i);
+        demi_words(out, size, "%ld", (long)i);
         break;
     case 'u':
         memcpy(&u, value + 8*k, sizeof u);
-        snprintf(out, size, "%llu", (unsigned long long)u);
+        demi_words(out, size, "%llu", (unsigned long long)u);
         break;
     case 'd':
         memcpy(&d, value + 8*k, sizeof d);
-        snprintf(out, size, "%.*g", digits, d);
+        demi_words(out, size, "%.*g", digits, d);
         break;
-    case 't': snprintf(out, size, "\"%.40s\"", value); break;
+    case 't': demi_words(out, size, "\"%.40s\"", value); break;
     default:
         memcpy(&x, value + sizeof x*k, sizeof x);
-        snprintf(out, size, "%.*g", digits, (double)x);
+        demi_words(out, size, "%.*g", digits, (double)x);
     }
 }
 /* Fails with an error message that names a field and its values in the file (`there`) and in this
@@ -38052,8 +38151,8 @@ static dem_result demi_row_differs(dem_world *w, const char *path, const demi_fi
         return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
                          "scene: written with other %s%s than those of this world; %s", path,
                          r->name, of, advice);
-    if (r->type == 'v') snprintf(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
-    else if (count > 1) snprintf(which, sizeof which, "[%d]", (int)k);
+    if (r->type == 'v') demi_words(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
+    else if (count > 1) demi_words(which, sizeof which, "[%d]", (int)k);
     demi_row_print(r, there, k, 6, a, sizeof a);
     demi_row_print(r, here, k, 6, b, sizeof b);
     if (!strcmp(a, b)) {
@@ -38109,10 +38208,10 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                 }
                 if (gone || !memcmp(here, there, r->size)) continue;
                 if (part == DEMI_PART_PAIRS)
-                    snprintf(of, sizeof of, "%s %d and %d", demi_scene_parts[part].name, i/n + 1,
-                             i%n + 1);
-                else snprintf(of, sizeof of, part ? "%s %d" : "%s", demi_scene_parts[part].name,
-                              i + 1);
+                    demi_words(of, sizeof of, "%s %d and %d", demi_scene_parts[part].name, i/n + 1,
+                               i%n + 1);
+                else demi_words(of, sizeof of, part ? "%s %d" : "%s", demi_scene_parts[part].name,
+                                i + 1);
                 return demi_row_differs(w, path, r, there, here, of);
             }
     return DEM_OK;
@@ -38222,7 +38321,7 @@ typedef struct demi_reader {
    index of its item, or -1. Returns 0. */
 static int demi_lie(const demi_reader *r, const char *what, long long which) {
     char number[32] = "";
-    if (which >= 0) snprintf(number, sizeof number, " %lld", which + 1);
+    if (which >= 0) demi_words(number, sizeof number, " %lld", which + 1);
     demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: invalid %s%s, although the "
               "checksum is correct; the file was altered, or the run that wrote it had blown up: "
               "use an older checkpoint", r->path, what, number);
@@ -38898,8 +38997,8 @@ typedef struct demi_changes {
     const char *allowed;           /* words */
     const dem_world *own;          /* copy of the world struct before the restart: its descs and
                                       materials */
-    int materials;                 /* 1: materials may differ */
-    demi_pair *pairs;              /* copy of its pairs; null unless they may differ */
+    int materials, paired;         /* 1: materials may differ; 1: pairs of materials may */
+    demi_pair *pairs;              /* copy of its pairs; null if both are 0 */
     char said[512];
     int laws;                      /* 1: user-defined laws or their history differ */
     int ledger, growth;            /* 1: the file has an account of energy; its bodies grow */
@@ -38944,8 +39043,8 @@ static void demi_changes_say(demi_changes *c, const demi_field_row *r, const cha
     while (k + 1 < count && !memcmp(there + item*k, here + item*k, item)) k++;
     demi_row_print(r, there, k, 6, a, sizeof a);
     demi_row_print(r, here, k, 6, b, sizeof b);
-    snprintf(c->said + n, sizeof c->said - n, "%s%s%s: %s there, %s here", n ? "; " : "", r->name,
-             of, a, b);
+    demi_words(c->said + n, sizeof c->said - n, "%s%s%s: %s there, %s here", n ? "; " : "", r->name,
+               of, a, b);
 }
 /* Gives a field the value of the file. A function becomes one that is never called, or null. */
 static void demi_change_put(const demi_field_row *r, void *item, const char *there) {
@@ -38955,6 +39054,16 @@ static void demi_change_put(const demi_field_row *r, void *item, const char *the
     memcpy(&set, there, sizeof set);
     if (set) memcpy((char *)item + r->offset, &fn, sizeof fn);
     else memset((char *)item + r->offset, 0, sizeof fn);
+}
+/* True if the value of a pair, number i of the scene's pairs, is a mixture here and in the file, so
+   that it follows from the materials, which are those of the file. */
+static int demi_change_mixed(const dem_world *w, int i, const demi_field_row *r,
+                             const char *there) {
+    const int n = w->material_count, a = DEMI_MIN(i/n, i%n), b = DEMI_MAX(i/n, i%n);
+    const dem_pair mix = demi_mix(&w->materials[a], &w->materials[b]);
+    char value[DEMI_ROW_MOST];
+    demi_row_value(r, &mix, value);
+    return !w->pairs[a*DEMI_MATERIALS + b].own && !memcmp(value, there, r->size);
 }
 /* Compares the descs, materials and pairs in the file with those of the world. Where they differ
    and may, the world takes the value of the file. What may not differ stays, and reading fails. */
@@ -38970,17 +39079,20 @@ static void demi_changes_take(dem_world *w, demi_changes *c, demi_stream *s) {
                 const int n = w->material_count;
                 const int may = part == 0 ? demi_may_change(r) &&
                     demi_word_in(c->allowed, r->name, strlen(r->name))
-                    : part == 1 ? c->materials && strcmp(r->name, "density") : c->pairs != 0;
+                    : part == 1 ? c->materials && strcmp(r->name, "density") : c->paired;
                 void *item = part == 0 ? (void *)&w->asked : part == 1 ? (void *)&w->materials[i]
                     : (void *)&w->pairs[i/n*DEMI_MATERIALS + i%n].given;
                 if (r->how & DEMI_FREE) continue;
                 demi_row_value(r, item, here);
                 demi_visit(s, there, r->size);
-                if (s->cut || !may || !memcmp(here, there, r->size)) continue;
+                if (s->cut || !memcmp(here, there, r->size)) continue;
+                if (!may && part == 2 && c->materials && demi_change_mixed(w, i, r, there))
+                    demi_change_put(r, item, there);
+                if (!may) continue;
                 *of = 0;
-                if (part == 1) snprintf(of, sizeof of, " of material %d", i + 1);
+                if (part == 1) demi_words(of, sizeof of, " of material %d", i + 1);
                 if (part == 2)
-                    snprintf(of, sizeof of, " of materials %d and %d", i/n + 1, i%n + 1);
+                    demi_words(of, sizeof of, " of materials %d and %d", i/n + 1, i%n + 1);
                 if (part < 2 || i/n <= i%n) demi_changes_say(c, r, there, here, of);
                 demi_change_put(r, item, there);
                 if (part) continue;
@@ -39073,7 +39185,8 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *w, const char *path,
     c.allowed = allowed;
     c.own = &own;
     c.materials = demi_word_in(allowed, "materials", 9);
-    if (result == DEM_OK && demi_word_in(allowed, "pairs", 5)) {
+    c.paired = demi_word_in(allowed, "pairs", 5);
+    if (result == DEM_OK && (c.materials || c.paired)) {
         c.pairs = (demi_pair *)demi_alloc(w, 1, pairs);
         if (c.pairs) memcpy(c.pairs, w->pairs, pairs);
         else result = demi_no_memory(w, __func__);
@@ -39529,7 +39642,7 @@ static void demi_find(demi_findings *f, dem_severity severity, const char *forma
     memmove(f->to + i + 1, f->to + i, (size_t)(f->kept - 1 - i)*sizeof *f->to);
     f->to[i].severity = severity;
     va_start(arguments, format);
-    vsnprintf(f->to[i].text, sizeof f->to[i].text, format, arguments);
+    demi_words_of(f->to[i].text, sizeof f->to[i].text, format, arguments);
     va_end(arguments);
 }
 
@@ -40299,7 +40412,7 @@ DEM_API int dem_world_check_print(dem_world *w, FILE *out) {
     dem_finding findings[16];
     int i, n = dem_world_check(w, findings, 16);
     for (i = 0; out && i < n && i < 16; i++)
-        fprintf(out, "%s: %s\n", severities[findings[i].severity], findings[i].text);
+        demi_print(out, "%s: %s\n", severities[findings[i].severity], findings[i].text);
     return n;
 }
 
@@ -40507,22 +40620,22 @@ static void demi_trials_advise(dem_trials *out) {
     out->best = found < 0 ? out->reference : found;
     best = &out->trial[out->best];
     if (found < 0)
-        snprintf(out->advice, sizeof out->advice, "chance alone changes the observables by up to "
-                 "%.2g of their scale, more than the tolerance of %.2g: give a longer duration, "
-                 "more seeds, or observables that are averages", ref->promise, out->tolerance);
+        demi_words(out->advice, sizeof out->advice, "chance alone changes the observables by up to "
+                   "%.2g of their scale, more than the tolerance of %.2g: give a longer duration, "
+                   "more seeds, or observables that are averages", ref->promise, out->tolerance);
     else if (!found)
-        snprintf(out->advice, sizeof out->advice, "keep the scene as it is: all observables are "
+        demi_words(out->advice, sizeof out->advice, "keep the scene as it is: all observables are "
                  "within %.2g of those of \"%s\" (tolerance %.2g), and no trial within it saves a "
                  "tenth of the time", best->promise, ref->name, out->tolerance);
     else if (best->seconds < now)
-        snprintf(out->advice, sizeof out->advice, "use \"%s\": all observables are within %.2g of "
-                 "those of \"%s\" (tolerance %.2g), in %.2g of the time that the scene takes as "
+        demi_words(out->advice, sizeof out->advice, "use \"%s\": all observables are within %.2g "
+                 "of those of \"%s\" (tolerance %.2g), in %.2g of the time that the scene takes as "
                  "it is", best->name, best->promise, ref->name, out->tolerance, best->seconds/now);
     else
-        snprintf(out->advice, sizeof out->advice, "use \"%s\": as it is, the scene is only within "
-                 "%.2g of \"%s\" (tolerance %.2g); this trial is within %.2g, and takes %.2g "
-                 "times as long", best->name, scene->promise, ref->name, out->tolerance,
-                 best->promise, best->seconds/now);
+        demi_words(out->advice, sizeof out->advice, "use \"%s\": as it is, the scene is only "
+                   "within %.2g of \"%s\" (tolerance %.2g); this trial is within %.2g, and takes "
+                   "%.2g times as long", best->name, scene->promise, ref->name, out->tolerance,
+                   best->promise, best->seconds/now);
 }
 /* Makes all runs of one trial, each on a new copy. A run that does not start or becomes unstable is
    a result of the trial (trial->refusal) and not an error of the call: the step may be too large,
@@ -40540,7 +40653,7 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
         demi_try_shake(t, (uint64_t)k);
         begun = demi_clock();
         if (demi_try_run(t, out, value[k]) == DEM_OK) trial->done++;
-        else snprintf(trial->refusal, sizeof trial->refusal, "%.199s", t->error);
+        else demi_words(trial->refusal, sizeof trial->refusal, "%.199s", t->error);
         trial->dt = (double)t->clock.dt;
         wall += demi_clock() - begun;
         demi_twin_free(w, t);
@@ -40705,29 +40818,29 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
 DEM_API void dem_trials_print(const dem_trials *t, FILE *out) {
     int i, e;
     if (!t || !out) return;
-    fprintf(out, "trials     %d runs each of %.3g s; means of the second half +- standard error\n",
-            t->seeds, t->duration);
-    fprintf(out, "  %-20s %-9s %-9s", "", "dt [s]", "s per s");
+    demi_print(out, "trials     %d runs each of %.3g s; means of the second half +- standard "
+               "error\n", t->seeds, t->duration);
+    demi_print(out, "  %-20s %-9s %-9s", "", "dt [s]", "s per s");
     for (e = 0; e < t->observable_count; e++) {
         const dem_observable *o = &t->observables[e];
         char name[64];
-        snprintf(name, sizeof name, o->unit && *o->unit ? "%s [%s]" : "%s", o->name, o->unit);
-        fprintf(out, " %-22s", name);
+        demi_words(name, sizeof name, o->unit && *o->unit ? "%s [%s]" : "%s", o->name, o->unit);
+        demi_print(out, " %-22s", name);
     }
-    fprintf(out, " within\n");
+    demi_print(out, " within\n");
     for (i = 0; i < t->count; i++) {
         const dem_trial *trial = &t->trial[i];
-        fprintf(out, "%c %-20s %-9.3g ", i == t->best ? '*' : ' ', trial->name, trial->dt);
-        if (trial->done < t->seeds) { fprintf(out, "%.120s\n", trial->refusal); continue; }
-        fprintf(out, "%-9.3g", trial->seconds);
+        demi_print(out, "%c %-20s %-9.3g ", i == t->best ? '*' : ' ', trial->name, trial->dt);
+        if (trial->done < t->seeds) { demi_print(out, "%.120s\n", trial->refusal); continue; }
+        demi_print(out, "%-9.3g", trial->seconds);
         for (e = 0; e < t->observable_count; e++) {
             char value[64];
-            snprintf(value, sizeof value, "%.5g +- %.1g", trial->value[e], trial->error[e]);
-            fprintf(out, " %-22s", value);
+            demi_words(value, sizeof value, "%.5g +- %.1g", trial->value[e], trial->error[e]);
+            demi_print(out, " %-22s", value);
         }
-        fprintf(out, " %.2g%s\n", trial->promise, i == t->reference ? " (reference)" : "");
+        demi_print(out, " %.2g%s\n", trial->promise, i == t->reference ? " (reference)" : "");
     }
-    fprintf(out, "advice     %s\n", t->advice);
+    demi_print(out, "advice     %s\n", t->advice);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -40751,7 +40864,7 @@ DEMI_FORMAT(3, 4) static dem_effect_state demi_say(dem_effect *e, int happened, 
                                                    ...) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(e->text, sizeof e->text, format, arguments);
+    demi_words_of(e->text, sizeof e->text, format, arguments);
     va_end(arguments);
     return happened ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
@@ -41283,22 +41396,22 @@ static void demi_effects_lines(const dem_effect *e, FILE *out) {
     for (k = 0; k < DEM_EFFECTS; k++) {
         char share[32] = "";
         if (e[k].measured && !(e[k].error <= 0.1 && e[k].share >= -0.1 && e[k].share <= 1)) {
-            snprintf(share, sizeof share, "too noisy");
+            demi_words(share, sizeof share, "too noisy");
             noisy++;
         } else if (e[k].measured)
-            snprintf(share, sizeof share, "%5.1f %% +- %.1f", 100*e[k].share, 100*e[k].error);
-        fprintf(out, "  %-17s%-7s%-17s%s\n", e[k].name, states[e[k].state], share, e[k].text);
+            demi_words(share, sizeof share, "%5.1f %% +- %.1f", 100*e[k].share, 100*e[k].error);
+        demi_print(out, "  %-17s%-7s%-17s%s\n", e[k].name, states[e[k].state], share, e[k].text);
     }
     if (noisy)
-        fprintf(out, "  too noisy: other programs used the machine while %d of them %s measured; "
-                "measure again on a quiet machine, or with a larger budget\n", noisy,
-                noisy > 1 ? "were" : "was");
+        demi_print(out, "  too noisy: other programs used the machine while %d of them %s "
+                   "measured; measure again on a quiet machine, or with a larger budget\n", noisy,
+                   noisy > 1 ? "were" : "was");
 }
 DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     dem_effect effects[DEM_EFFECTS];
     if (demi_null_look(w, __func__, out, "out")) return;
     if (dem_effects_get(w, budget, effects) < 0) return;
-    fprintf(out, "effects, and the share of a step's time that each costs\n");
+    demi_print(out, "effects, and the share of a step's time that each costs\n");
     demi_effects_lines(effects, out);
 }
 
@@ -41451,18 +41564,18 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
     const int auto_ = w->asked.search == DEM_SEARCH_AUTO;
     int i;
     if (w->desc.search == DEM_SEARCH_HIERARCHICAL && w->levels.count) {
-        fprintf(out, "           %d level%s for radii 1 : %.3g, of up to", w->levels.count,
-                w->levels.count == 1 ? "" : "s",
-                (double)w->effects.radius_max/DEMI_MAX((double)w->effects.radius_min, 1e-300));
+        demi_print(out, "           %d level%s for radii 1 : %.3g, of up to", w->levels.count,
+                   w->levels.count == 1 ? "" : "s",
+                   (double)w->effects.radius_max/DEMI_MAX((double)w->effects.radius_min, 1e-300));
         for (i = 0; i < w->levels.count; i++)
-            fprintf(out, "%s %.3g m (%d)", i ? "," : "", w->levels.level[i].radius,
-                    w->levels.level[i].count);
-        fprintf(out, "\n");
+            demi_print(out, "%s %.3g m (%d)", i ? "," : "", w->levels.level[i].radius,
+                       w->levels.level[i].count);
+        demi_print(out, "\n");
     }
     if (w->levels.tests[0] > 0)
-        fprintf(out, "           %s: %s; distance tests per body and search, estimated: %.3g with "
-                "levels, %.3g with one grid\n", auto_ ? "chosen" : "set",
-                demi_searches[w->desc.search].name, w->levels.tests[1], w->levels.tests[0]);
+        demi_print(out, "           %s: %s; distance tests per body and search, estimated: %.3g "
+                   "with levels, %.3g with one grid\n", auto_ ? "chosen" : "set",
+                   demi_searches[w->desc.search].name, w->levels.tests[1], w->levels.tests[0]);
 }
 
 /* Returns the number of persistent contacts. */
@@ -41475,8 +41588,8 @@ static int demi_kept_total(const dem_world *w) {
 static const char *demi_law_memory_text(const demi_law_row *row, char text[64]) {
     text[0] = 0;
     if (row->memory)
-        snprintf(text, 64, " (%d bytes of memory per neighbour pair)",
-                 row->memory*(int)sizeof(dem_real));
+        demi_words(text, 64, " (%d bytes of memory per neighbour pair)",
+                   row->memory*(int)sizeof(dem_real));
     return text;
 }
 /* Prints the contact laws in force. Of a user-defined law only its settings are known. */
@@ -41496,48 +41609,48 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
     if (!demi_response_is(w, DEMI_LAWS)) {
-        fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are "
+        demi_print(out, "effects    contacts are impulses, %s; gaps up to %.3g m are "
                 "included\n           last step: %d sweeps left %.3g m/s; %llu steps did not reach "
                 "their tolerance", w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
                 w->margin.reach, w->booked.sweeps, w->booked.residual,
                 (unsigned long long)w->booked.unsolved);
         if (w->solver.limited)
-            fprintf(out, "; in the last of them %d contacts were at their friction limit",
-                    w->solver.limited);
+            demi_print(out, "; in the last of them %d contacts were at their friction limit",
+                       w->solver.limited);
         fputc('\n', out);
         return;
     }
     if (w->desc.law) {
-        fprintf(out, "effects    normal, tangential, rolling: user-defined law; spins and torques "
-                "are followed; %d reals of memory per contact\n", w->desc.law_memory);
+        demi_print(out, "effects    normal, tangential, rolling: user-defined law; spins and "
+                   "torques are followed; %d reals of memory per contact\n", w->desc.law_memory);
         for (i = 0; i < w->material_count; i++)
             if (demi_law_lacks(w, i))
-                fprintf(out, "           it exerts no moment against the %s of material %d\n",
-                        demi_law_lacks(w, i), i + 1);
+                demi_print(out, "           it exerts no moment against the %s of material %d\n",
+                           demi_law_lacks(w, i), i + 1);
         if (w->margin.reach > 0)
-            fprintf(out, "           called for gaps below %.3g m, in contact or not\n",
-                    w->margin.reach);
+            demi_print(out, "           called for gaps below %.3g m, in contact or not\n",
+                       w->margin.reach);
 #ifdef DEM_LAW
         if (w->desc.law != DEM_LAW)
-            fprintf(out, "           DEM_LAW names another law than desc.law\n");
+            demi_print(out, "           DEM_LAW names another law than desc.law\n");
 #endif
-        fprintf(out, "           %s\n", demi_own_rows(w) ? "contacts of spheres row by row"
-                : w->desc.law_who ? "called contact by contact, because law_who is set: slower"
-                : "called contact by contact: slower; DEM_LAW_ROWS makes a law for rows of it");
+        demi_print(out, "           %s\n", demi_own_rows(w) ? "contacts of spheres row by row"
+                   : w->desc.law_who ? "called contact by contact, because law_who is set: slower"
+                   : "called contact by contact: slower; DEM_LAW_ROWS makes a law for rows of it");
         return;
     }
-    fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,
-            w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
-            : w->desc.tension == DEM_TENSION_COMPENSATED ? ", no tension" : "",
-            demi_law_memory_text(laws->normal, text), unused);
-    fprintf(out, "           tangential: %s%s\n", laws->tangent->name, laws->tangent->law
-            ? demi_law_memory_text(laws->tangent, text)
-            : " (no friction in any pair: no spin, no torque, no memory)");
+    demi_print(out, "effects    normal: %s%s%s%s\n", laws->normal->name,
+               w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
+               : w->desc.tension == DEM_TENSION_COMPENSATED ? ", no tension" : "",
+               demi_law_memory_text(laws->normal, text), unused);
+    demi_print(out, "           tangential: %s%s\n", laws->tangent->name, laws->tangent->law
+               ? demi_law_memory_text(laws->tangent, text)
+               : " (no friction in any pair: no spin, no torque, no memory)");
     if (laws->tangent->law)
-        fprintf(out, "           friction is limited to mu times %s; %s\n", loads[load],
-                laws->tangent->memory ? sliders[w->desc.slider] : "there is only a dashpot");
-    fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
-            demi_law_memory_text(laws->rolling, text));
+        demi_print(out, "           friction is limited to mu times %s; %s\n", loads[load],
+                   laws->tangent->memory ? sliders[w->desc.slider] : "there is only a dashpot");
+    demi_print(out, "           rolling: %s%s\n", laws->rolling->name,
+               demi_law_memory_text(laws->rolling, text));
 }
 /* Prints the options of the desc that were set and that no other line prints. */
 static void demi_options_report(const dem_world *w, FILE *out) {
@@ -41548,7 +41661,7 @@ static void demi_options_report(const dem_world *w, FILE *out) {
         if (!(r->how & DEMI_PRINTED) || !(fabs(demi_row_read(r, &w->asked, 0)) > 0)) continue;
         demi_row_value(r, &w->asked, value);
         demi_row_print(r, value, 0, 6, text, sizeof text);
-        fprintf(out, "%s%s %s", count++ ? ", " : "options    ", r->name, text);
+        demi_print(out, "%s%s %s", count++ ? ", " : "options    ", r->name, text);
     }
     if (count) fputc('\n', out);
 }
@@ -41557,17 +41670,18 @@ static void demi_options_report(const dem_world *w, FILE *out) {
 static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
     if (w->bodies.shaped && !w->effects.unlike)
-        fprintf(out, "           %d bodies are clusters of one sphere, computed as spheres: "
-                "rotation by %s\n", w->bodies.shaped, demi_rotation_rows[w->desc.rotation].name);
+        demi_print(out, "           %d bodies are clusters of one sphere, computed as spheres: "
+                   "rotation by %s\n", w->bodies.shaped, demi_rotation_rows[w->desc.rotation].name);
     else if (w->bodies.shaped)
-        fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
-                "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
+        demi_print(out, "           %d bodies are not spheres: rotation by %s; overlap of "
+                "ellipsoids %s; contacts of a cluster %s; %.2f contacts per body\n",
+                w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
                 : "are separate", w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
     else if (w->bodies.orienting)
-        fprintf(out, "           orientations of spheres are followed, because desc.orientations "
-                "is 1\n");
+        demi_print(out, "           orientations of spheres are followed, because "
+                   "desc.orientations is 1\n");
 }
 /* Prints the loads of walls and joints, and the flows of feeds and outlets. */
 static void demi_flows_report(const dem_world *w, FILE *out) {
@@ -41575,69 +41689,70 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     for (i = 0; i < w->wall_count; i++) {
         const dem_wall_loads *ch = &w->walls[i].loads;
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
-        fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
-                "power %.4g W\n", (int)w->walls[i].id, ch->contacts, (double)ch->force.x,
-                (double)ch->force.y, (double)ch->force.z, (double)ch->torque_axial,
-                (double)ch->power);
+        demi_print(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N "
+                   "m, power %.4g W\n", (int)w->walls[i].id, ch->contacts, (double)ch->force.x,
+                   (double)ch->force.y, (double)ch->force.z, (double)ch->torque_axial,
+                   (double)ch->power);
     }
     for (i = 0; i < w->wall_count; i++) {
         const dem_motion *m = &w->walls[i].motion;
         dem_servo s;
         if (w->walls[i].kind == DEMI_WALL_NONE || m->kind != DEM_MOTION_SERVO) continue;
         s = demi_servo_now(w, i);
-        fprintf(out, "servo %-3d  presses along (%.3g, %.3g, %.3g) m/s with %.6g N, target %.6g N, "
-                "error %.3g N; speed %.4g m/s, %.6g m from its start%s\n", (int)w->walls[i].id,
+        demi_print(out, "servo %-3d  presses along (%.3g, %.3g, %.3g) m/s with %.6g N, target %.6g "
+                "N, error %.3g N; speed %.4g m/s, %.6g m from its start%s\n", (int)w->walls[i].id,
                 (double)m->velocity.x, (double)m->velocity.y, (double)m->velocity.z, s.force,
                 s.target, s.force - s.target, s.speed, s.travel, m->travel > 0 &&
                 fabs(s.travel) >= (double)m->travel*(1 - 1e-6) ? ", the limit of its travel" : "");
     }
     if (w->cell.on)
-        fprintf(out, "cell       strain %.4g %.4g %.4g, shear %.4g; rates %.4g %.4g %.4g, "
-                "%.4g 1/s; stress %.6g %.6g %.6g Pa\n", w->cell.strain[0], w->cell.strain[1],
-                w->cell.strain[2], w->cell.sheared, w->cell.rate[0], w->cell.rate[1],
-                w->cell.rate[2], w->cell.shear, w->cell.stress[0], w->cell.stress[1],
-                w->cell.stress[2]);
+        demi_print(out, "cell       strain %.4g %.4g %.4g, shear %.4g; rates %.4g %.4g %.4g, "
+                   "%.4g 1/s; stress %.6g %.6g %.6g Pa\n", w->cell.strain[0], w->cell.strain[1],
+                   w->cell.strain[2], w->cell.sheared, w->cell.rate[0], w->cell.rate[1],
+                   w->cell.rate[2], w->cell.shear, w->cell.stress[0], w->cell.stress[1],
+                   w->cell.stress[2]);
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;
-        fprintf(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; gap %.3g "
-                "m\n", (int)w->joints[i].id, (double)demi_length(j->force),
-                (double)demi_length(j->torque), (double)j->motor_torque, (double)j->power,
-                (double)j->gap);
+        demi_print(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; gap "
+                   "%.3g m\n", (int)w->joints[i].id, (double)demi_length(j->force),
+                   (double)demi_length(j->torque), (double)j->motor_torque, (double)j->power,
+                   (double)j->gap);
     }
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;
-        fprintf(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
-                (unsigned long long)f->total, f->mass, (unsigned long long)f->waiting,
-                f->done ? "; done" : "");
+        demi_print(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
+                   (unsigned long long)f->total, f->mass, (unsigned long long)f->waiting,
+                   f->done ? "; done" : "");
     }
     for (i = 0; i < w->outlet_count; i++) {
         const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
         const dem_outlet_desc *of = &demi_outlet_at(w, i)->desc;
-        fprintf(out, "outlet %-3d %llu grains, %.6g kg%s", i + 1, (unsigned long long)o->total,
-                o->total_mass, demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed");
+        demi_print(out, "outlet %-3d %llu grains, %.6g kg%s", i + 1, (unsigned long long)o->total,
+                   o->total_mass, demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed");
         if (of->wanted_min > 0 || of->wanted_max > 0)
-            fprintf(out, ", of them wanted %llu, %.6g kg", (unsigned long long)o->sorted,
-                    o->sorted_mass);
+            demi_print(out, ", of them wanted %llu, %.6g kg", (unsigned long long)o->sorted,
+                       o->sorted_mass);
         fputc('\n', out);
     }
 }
 /* Prints the account of energy. A large residual means that the time step is too large. */
 static void demi_ledger_report(const dem_world *w, FILE *out) {
     const dem_ledger l = dem_ledger_get(w);
-    fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
+    demi_print(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
             "%.6g\n           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
             "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n",
             l.gravity, l.walls, l.force, l.inserted, l.removed, l.kinetic, l.rotational, l.elastic,
             l.normal, l.slide, l.tangent, l.rolling);
     if (l.growth < 0 || l.growth > 0)
-        fprintf(out, "           in by growing radii and changes of the scene: %.6g\n", l.growth);
+        demi_print(out, "           in by growing radii and changes of the scene: %.6g\n",
+                   l.growth);
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0))
-        fprintf(out, "           unknown to the ledger: %.3g J of your law, which does not set "
-                "force->energy\n", l.unknown);
+        demi_print(out, "           unknown to the ledger: %.3g J of your law, which does not set "
+                   "force->energy\n", l.unknown);
     else
-        fprintf(out, "           residual %.3g (%.2g of the throughput)\n", l.residual,
-                l.throughput > 0 ? l.residual/l.throughput : 0);
+        demi_print(out, "           residual %.3g (%.2g of the throughput)\n", l.residual,
+                   l.throughput > 0 ? l.residual/l.throughput : 0);
 }
 /* Prints effects that the scene contains and that have not happened so far. */
 static void demi_idle_report(dem_world *look, FILE *out) {
@@ -41646,7 +41761,7 @@ static void demi_idle_report(dem_world *look, FILE *out) {
     demi_effects_look(look, e);
     for (k = 0; k < DEM_EFFECTS; k++)
         if (e[k].missing)
-            fprintf(out, "           %s: %s\n", e[k].name, e[k].text);
+            demi_print(out, "           %s: %s\n", e[k].name, e[k].text);
 }
 /* Prints the report; section 11 of the manual explains its lines. */
 static void demi_report(const dem_world *world, FILE *out) {
@@ -41660,45 +41775,45 @@ static void demi_report(const dem_world *world, FILE *out) {
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
     if (w->crew.best && w->crew.best < c.threads)
-        snprintf(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
-    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
+        demi_words(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
+    demi_print(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR, DEM_VERSION_PATCH,
             DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", few, c.domains,
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
-    fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
-            "+ %llu left\n", w->bodies.count, (double)w->effects.radius_min,
-            (double)w->effects.radius_max, (unsigned long long)w->bodies.balance.inserted,
-            (unsigned long long)w->bodies.balance.present,
-            (unsigned long long)w->bodies.balance.removed,
-            (unsigned long long)w->bodies.balance.left);
-    fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
-            (unsigned long long)w->clock.steps, (double)w->clock.dt, demi_integrator_of(w)->name,
-            demi_integrator_of(w)->order);
+    demi_print(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu "
+               "removed + %llu left\n", w->bodies.count, (double)w->effects.radius_min,
+               (double)w->effects.radius_max, (unsigned long long)w->bodies.balance.inserted,
+               (unsigned long long)w->bodies.balance.present,
+               (unsigned long long)w->bodies.balance.removed,
+               (unsigned long long)w->bodies.balance.left);
+    demi_print(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
+               (unsigned long long)w->clock.steps, (double)w->clock.dt, demi_integrator_of(w)->name,
+               demi_integrator_of(w)->order);
     if (demi_response_is(w, DEMI_LASTING))
-        fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
-                "bound by %s\n", (double)a.contact_time,
-                w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
-                demi_dt_limit(&a), (double)a.dt_max, (double)a.rayleigh, a.binds);
+        demi_print(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
+                   "bound by %s\n", (double)a.contact_time,
+                   w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
+                   demi_dt_limit(&a), (double)a.dt_max, (double)a.rayleigh, a.binds);
     demi_held_report(w, out);
-    fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
-            "candidates, %.2f contacts\n", demi_searches[w->desc.search].name, w->margin.skin,
-            (unsigned long long)w->clock.rebuilds,
-            w->clock.rebuilds ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
-            per*c.candidates, per*c.contacts);
+    demi_print(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
+               "candidates, %.2f contacts\n", demi_searches[w->desc.search].name, w->margin.skin,
+               (unsigned long long)w->clock.rebuilds,
+               w->clock.rebuilds ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
+               per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     demi_laws_report(w, out);
     demi_options_report(w, out);
     demi_shapes_report(w, out);
-    fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
-            w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
-                ? "differ (coefficients per neighbour pair)"
-                : "of few species (coefficients per pair of species)", walls,
-            w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
-            demi_kernel_choose(w));
+    demi_print(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
+               w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
+                   ? "differ (coefficients per neighbour pair)"
+                   : "of few species (coefficients per pair of species)", walls,
+               w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
+               demi_kernel_choose(w));
     demi_idle_report(w, out);
-    fprintf(out, "overlap    %.3g of the radius at most so far%s%s\n", w->booked.overlap_max,
-            w->booked.crushed.next > 0 ? ", above 0.05 " : "",
-            demi_crushed_text(w, crushed, sizeof crushed));
+    demi_print(out, "overlap    %.3g of the radius at most so far%s%s\n", w->booked.overlap_max,
+               w->booked.crushed.next > 0 ? ", above 0.05 " : "",
+               demi_crushed_text(w, crushed, sizeof crushed));
     dem_pairs_print(w, out);
     demi_flows_report(w, out);
     if (w->desc.ledger) demi_ledger_report(w, out);
@@ -44566,12 +44681,12 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     if (demi_out_open(&r->out, w, __func__, path) != DEM_OK) { demi_free(w, r); return 0; }
     r->out.path = r->out.place;                 /* a copy: the caller's text may not last */
     slash = strrchr(path, '/');
-    snprintf(r->title, sizeof r->title, "%s", d.title ? d.title : slash ? slash + 1 : path);
+    demi_words(r->title, sizeof r->title, "%s", d.title ? d.title : slash ? slash + 1 : path);
     if (real >= 0) {
         const char *name = demi_name(w->desc.body_reals, real, &n);
-        snprintf(r->number, sizeof r->number, "%.*s", n, name);
+        demi_words(r->number, sizeof r->number, "%.*s", n, name);
     } else if (d.number_fn || group >= 0)
-        snprintf(r->number, sizeof r->number, "%s", d.number ? d.number : "number");
+        demi_words(r->number, sizeof r->number, "%s", d.number ? d.number : "number");
     for (k = 0; k < sizeof demi_viewer/sizeof *demi_viewer; k++) fputs(demi_viewer[k], r->out.file);
     r->due = -1;
     if (d.interval > 0) {

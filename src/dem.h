@@ -23,6 +23,7 @@
      >>implementation - private code from here on; users need not read it
      core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
+       >>printing          text with a decimal point in every locale
        >>maths             vectors, poses, random numbers
        >>layout            data structures: lists, contacts, walls, feeds, joints
        >>state             the state of a world
@@ -196,6 +197,7 @@
 #undef Y
 
 #include "core/platform.h"
+#include "core/printing.h"
 #include "core/maths.h"
 #include "core/layout.h"
 #include "core/state.h"

@@ -5149,13 +5149,14 @@ class World(WorldBase):
 
     def checkpoint_read_changed(self, path, allowed):
         """The same for a world that differs from the one that wrote the file. allowed: words, each the name of a field
-        of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all but density) or "pairs";
-        "" allows nothing. Fields named there keep the values of this world. Everything else must agree; domain,
-        boundary, planar, thickness, response, body_reals, law_memory_names, groups, shapes, walls, fields, feeds and
-        outlets always. Contact histories are converted where a law is the same, and begin at 0 if a law is
-        user-defined and `law`, `law_memory` or the like differs. If the file has no ledger, the ledger begins with
-        the present kinetic energy as `inserted` and the present elastic energy as `growth`. Otherwise `growth`
-        receives the energy that springs hold more than in the file.
+        of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all but density, and the
+        pairs that are mixtures of them) or "pairs" (also those of dem_pair_set); "" allows nothing. Fields named
+        there keep the values of this world. Everything else must agree; domain, boundary, planar, thickness,
+        response, body_reals, law_memory_names, groups, shapes, walls, fields, feeds and outlets always. Contact
+        histories are converted where a law is the same, and begin at 0 if a law is user-defined and `law`,
+        `law_memory` or the like differs. If the file has no ledger, the ledger begins with the present kinetic energy
+        as `inserted` and the present elastic energy as `growth`. Otherwise `growth` receives the energy that springs
+        hold more than in the file.
         """
         self._ok(_lib.dem_checkpoint_read_changed(self._at, os.fsencode(path), allowed.encode()))
 

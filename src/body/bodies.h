@@ -348,7 +348,7 @@ static int demi_shape_strange(const dem_world *w, const demi_wall *wall, const d
 static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall *wall, int number,
                                  int body, int part) {
     char who[32] = "the body";
-    if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
+    if (body >= 0) demi_words(who, sizeof who, "body %d", body + 1);
     return demi_refuse(w, call, "wall %d is a %s and %s a%s %s: %s; nothing was added", number,
                        demi_wall_kinds[wall->kind].name, who, demi_an(demi_shape_rows[part].name),
                        demi_shape_rows[part].name, demi_wall_why(w, wall, part));

@@ -201,8 +201,8 @@ static void demi_tell(dem_world *w, const char *call, const char *format, va_lis
     #pragma omp critical(demi_fail)             /* laws may fail on several threads at once */
 #endif
     {
-        const int n = call ? snprintf(w->error, sizeof w->error, "%s: ", call) : 0;
-        vsnprintf(w->error + n, sizeof w->error - (size_t)n, format, args);
+        const int n = call ? demi_words(w->error, sizeof w->error, "%s: ", call) : 0;
+        demi_words_of(w->error + n, sizeof w->error - (size_t)n, format, args);
         demi_refused_note(w, strcspn(w->error, ":"));
     }
 }
@@ -237,7 +237,7 @@ static void demi_built(dem_world *w, const char *call) {
     memmove(w->refused_calls[k], w->refused_calls[k + 1],
             (size_t)(--w->refused - k)*sizeof *w->refused_calls);
     if (!w->refused || strncmp(w->refusal, call, n) || w->refusal[n] != ':') return;
-    snprintf(w->refusal, sizeof w->refusal, "%s: failed as well", w->refused_calls[0]);
+    demi_words(w->refusal, sizeof w->refusal, "%s: failed as well", w->refused_calls[0]);
 }
 /* Fails before a run if a call that builds the scene failed and its message has not been read.
    Otherwise an incomplete scene would run and return DEM_OK. */

@@ -119,12 +119,12 @@ static dem_result demi_rows_check(dem_world *w, const char *call, const demi_fie
     if (!r) return DEM_OK;
     gap = *r->unit ? " " : "";
     if (r->other > 0)
-        snprintf(least, sizeof least, "%s (%g%s%s)", r[-r->other].name,
-                 demi_row_read(r - r->other, item, 0), gap, r->unit);
-    else snprintf(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0, gap, r->unit);
-    if (r->words && r->type != 'e') snprintf(words, sizeof words, ", %s,", r->words);
+        demi_words(least, sizeof least, "%s (%g%s%s)", r[-r->other].name,
+                   demi_row_read(r - r->other, item, 0), gap, r->unit);
+    else demi_words(least, sizeof least, "%g%s%s", r->how & DEMI_ANY ? -r->most : 0, gap, r->unit);
+    if (r->words && r->type != 'e') demi_words(words, sizeof words, ", %s,", r->words);
     if (demi_row_most(r) < DBL_MAX)
-        snprintf(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
+        demi_words(most, sizeof most, "%s %g", r->how & DEMI_UNDER ? "<" : "<=", demi_row_most(r));
     return demi_refuse(w, call, "%s%s is %g%s%s, must be %s%s %s%s and %s%s; %s", r->name, of,
                        demi_row_read(r, item, k), gap, r->unit, r->other > 0 ? "0 or " : "",
                        r->how & DEMI_OVER ? ">" : ">=", least, words, most,

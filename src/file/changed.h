@@ -62,8 +62,8 @@ static void demi_changes_say(demi_changes *c, const demi_field_row *r, const cha
     while (k + 1 < count && !memcmp(there + item*k, here + item*k, item)) k++;
     demi_row_print(r, there, k, 6, a, sizeof a);
     demi_row_print(r, here, k, 6, b, sizeof b);
-    snprintf(c->said + n, sizeof c->said - n, "%s%s%s: %s there, %s here", n ? "; " : "", r->name,
-             of, a, b);
+    demi_words(c->said + n, sizeof c->said - n, "%s%s%s: %s there, %s here", n ? "; " : "", r->name,
+               of, a, b);
 }
 /* Gives a field the value of the file. A function becomes one that is never called, or null. */
 static void demi_change_put(const demi_field_row *r, void *item, const char *there) {
@@ -109,9 +109,9 @@ static void demi_changes_take(dem_world *w, demi_changes *c, demi_stream *s) {
                     demi_change_put(r, item, there);
                 if (!may) continue;
                 *of = 0;
-                if (part == 1) snprintf(of, sizeof of, " of material %d", i + 1);
+                if (part == 1) demi_words(of, sizeof of, " of material %d", i + 1);
                 if (part == 2)
-                    snprintf(of, sizeof of, " of materials %d and %d", i/n + 1, i%n + 1);
+                    demi_words(of, sizeof of, " of materials %d and %d", i/n + 1, i%n + 1);
                 if (part < 2 || i/n <= i%n) demi_changes_say(c, r, there, here, of);
                 demi_change_put(r, item, there);
                 if (part) continue;

@@ -522,22 +522,22 @@ static void demi_row_print(const demi_field_row *r, const char *value, size_t k,
         memcpy(&i, value + 4*k, sizeof i);
         for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
             word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
-        if (word) { snprintf(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
+        if (word) { demi_words(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
         memcpy(&i, value + 4*k, sizeof i);
-        snprintf(out, size, "%ld", (long)i);
+        demi_words(out, size, "%ld", (long)i);
         break;
     case 'u':
         memcpy(&u, value + 8*k, sizeof u);
-        snprintf(out, size, "%llu", (unsigned long long)u);
+        demi_words(out, size, "%llu", (unsigned long long)u);
         break;
     case 'd':
         memcpy(&d, value + 8*k, sizeof d);
-        snprintf(out, size, "%.*g", digits, d);
+        demi_words(out, size, "%.*g", digits, d);
         break;
-    case 't': snprintf(out, size, "\"%.40s\"", value); break;
+    case 't': demi_words(out, size, "\"%.40s\"", value); break;
     default:
         memcpy(&x, value + sizeof x*k, sizeof x);
-        snprintf(out, size, "%.*g", digits, (double)x);
+        demi_words(out, size, "%.*g", digits, (double)x);
     }
 }
 /* Fails with an error message that names a field and its values in the file (`there`) and in this
@@ -556,8 +556,8 @@ static dem_result demi_row_differs(dem_world *w, const char *path, const demi_fi
         return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
                          "scene: written with other %s%s than those of this world; %s", path,
                          r->name, of, advice);
-    if (r->type == 'v') snprintf(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
-    else if (count > 1) snprintf(which, sizeof which, "[%d]", (int)k);
+    if (r->type == 'v') demi_words(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
+    else if (count > 1) demi_words(which, sizeof which, "[%d]", (int)k);
     demi_row_print(r, there, k, 6, a, sizeof a);
     demi_row_print(r, here, k, 6, b, sizeof b);
     if (!strcmp(a, b)) {
@@ -613,10 +613,10 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                 }
                 if (gone || !memcmp(here, there, r->size)) continue;
                 if (part == DEMI_PART_PAIRS)
-                    snprintf(of, sizeof of, "%s %d and %d", demi_scene_parts[part].name, i/n + 1,
-                             i%n + 1);
-                else snprintf(of, sizeof of, part ? "%s %d" : "%s", demi_scene_parts[part].name,
-                              i + 1);
+                    demi_words(of, sizeof of, "%s %d and %d", demi_scene_parts[part].name, i/n + 1,
+                               i%n + 1);
+                else demi_words(of, sizeof of, part ? "%s %d" : "%s", demi_scene_parts[part].name,
+                                i + 1);
                 return demi_row_differs(w, path, r, there, here, of);
             }
     return DEM_OK;

@@ -660,7 +660,7 @@ static dem_result demi_vtp_head(demi_vtp_in *v, const char *tag, const char *end
     const char *word = demi_attribute(tag, end, "compressor", &size);
     char what[120];
     if (word) {
-        snprintf(what, sizeof what, "is compressed (%.*s)", (int)DEMI_MIN(size, 60), word);
+        demi_words(what, sizeof what, "is compressed (%.*s)", (int)DEMI_MIN(size, 60), word);
         return demi_vtp_fail(v, what);
     }
     v->wide = demi_attribute_is(tag, end, "header_type", "UInt64");

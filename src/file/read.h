@@ -174,8 +174,8 @@ static dem_result demi_text_corner(const demi_text *t, int count, int back, int3
             return DEM_OK;
         }
     }
-    snprintf(where, sizeof where, "a corner is expected, a whole number from 1 to %d, the number "
-             "of vertices; correct it or export the file again", count);
+    demi_words(where, sizeof where, "a corner is expected, a whole number from 1 to %d, the number "
+               "of vertices; correct it or export the file again", count);
     return demi_text_fail(t, where);
 }
 
@@ -466,10 +466,10 @@ static void demi_health_shapes(const dem_mesh *mesh, dem_mesh_health *health) {
                                (dem_real)hi[1], (dem_real)hi[2]);
     for (axis = 0; axis < 3; axis++) extent = fmax(extent, hi[axis] - lo[axis]);
     if (extent > 50 || extent < 1e-3)
-        snprintf(health->hint, sizeof health->hint, "largest extent is %s m: the file may %s; "
-                 "multiply its vertices by %s", demi_format_real(number, extent, 4), extent > 50 ?
-                 "be in millimetres" : "have been scaled to metres twice", extent > 50 ?
-                 "0.001" : "1000");
+        demi_words(health->hint, sizeof health->hint, "largest extent is %s m: the file may %s; "
+                   "multiply its vertices by %s", demi_format_real(number, extent, 4), extent > 50 ?
+                   "be in millimetres" : "have been scaled to metres twice", extent > 50 ?
+                   "0.001" : "1000");
 }
 
 /* Fills in the part that depends on other triangles: edges, duplicates and winding (>>closed). */

@@ -102,7 +102,7 @@ typedef struct demi_reader {
    index of its item, or -1. Returns 0. */
 static int demi_lie(const demi_reader *r, const char *what, long long which) {
     char number[32] = "";
-    if (which >= 0) snprintf(number, sizeof number, " %lld", which + 1);
+    if (which >= 0) demi_words(number, sizeof number, " %lld", which + 1);
     demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: invalid %s%s, although the "
               "checksum is correct; the file was altered, or the run that wrote it had blown up: "
               "use an older checkpoint", r->path, what, number);

@@ -368,10 +368,10 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
 /* A column for a coefficient of a single law that some pair has. */
 #define DEMI_PROPERTY_HEAD(PROPERTY, COEFFICIENT, UNIT) \
     if (demi_pairs_have(w, offsetof(dem_pair, PROPERTY))) \
-        fprintf(out, "  " #PROPERTY " [" UNIT "]");
+        demi_print(out, "  " #PROPERTY " [" UNIT "]");
 #define DEMI_PROPERTY_PRINT(PROPERTY, COEFFICIENT, UNIT) \
     if (demi_pairs_have(w, offsetof(dem_pair, PROPERTY))) \
-        fprintf(out, "  %-*.4g", (int)sizeof #PROPERTY " [" UNIT "]" - 1, (double)p->PROPERTY);
+        demi_print(out, "  %-*.4g", (int)sizeof #PROPERTY " [" UNIT "]" - 1, (double)p->PROPERTY);
 static int demi_pairs_have(const dem_world *w, size_t offset) {
     const int n = w->material_count;
     dem_real x = 0;
@@ -384,22 +384,22 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
     if (demi_null_look(w, __func__, out, "out")) return;
     const int laws = demi_response_is(w, DEMI_LAWS);
     int i, j;
-    fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
-            "kt/kn%s", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
+    demi_print(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
+               "kt/kn%s", laws ? "" : "  mu_spin cohesion [N] compliance [m/N]");
     DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_HEAD)
-    fprintf(out, "\n");
+    demi_print(out, "\n");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
-            fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %-6.4g",
+            demi_print(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %-6.4g",
                     i + 1, j + 1, (double)p->young_eff, (double)p->shear_eff,
                     (double)p->restitution, (double)p->friction,
                     (double)DEMI_MAX(p->friction, p->friction_static), (double)p->rolling_friction,
                     (double)p->stiffness, (double)p->stiffness_ratio);
             if (!laws)
-                fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
-                        (double)p->cohesion, (double)p->compliance);
+                demi_print(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
+                           (double)p->cohesion, (double)p->compliance);
             DEM_LAW_COEFFICIENTS(DEMI_PROPERTY_PRINT)
-            fprintf(out, "%s\n", p->ignored ? "  ignored" : "");
+            demi_print(out, "%s\n", p->ignored ? "  ignored" : "");
         }
 }

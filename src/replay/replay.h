@@ -559,12 +559,12 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     if (demi_out_open(&r->out, w, __func__, path) != DEM_OK) { demi_free(w, r); return 0; }
     r->out.path = r->out.place;                 /* a copy: the caller's text may not last */
     slash = strrchr(path, '/');
-    snprintf(r->title, sizeof r->title, "%s", d.title ? d.title : slash ? slash + 1 : path);
+    demi_words(r->title, sizeof r->title, "%s", d.title ? d.title : slash ? slash + 1 : path);
     if (real >= 0) {
         const char *name = demi_name(w->desc.body_reals, real, &n);
-        snprintf(r->number, sizeof r->number, "%.*s", n, name);
+        demi_words(r->number, sizeof r->number, "%.*s", n, name);
     } else if (d.number_fn || group >= 0)
-        snprintf(r->number, sizeof r->number, "%s", d.number ? d.number : "number");
+        demi_words(r->number, sizeof r->number, "%s", d.number ? d.number : "number");
     for (k = 0; k < sizeof demi_viewer/sizeof *demi_viewer; k++) fputs(demi_viewer[k], r->out.file);
     r->due = -1;
     if (d.interval > 0) {

@@ -24,7 +24,7 @@ static void demi_find(demi_findings *f, dem_severity severity, const char *forma
     memmove(f->to + i + 1, f->to + i, (size_t)(f->kept - 1 - i)*sizeof *f->to);
     f->to[i].severity = severity;
     va_start(arguments, format);
-    vsnprintf(f->to[i].text, sizeof f->to[i].text, format, arguments);
+    demi_words_of(f->to[i].text, sizeof f->to[i].text, format, arguments);
     va_end(arguments);
 }
 
@@ -794,6 +794,6 @@ DEM_API int dem_world_check_print(dem_world *w, FILE *out) {
     dem_finding findings[16];
     int i, n = dem_world_check(w, findings, 16);
     for (i = 0; out && i < n && i < 16; i++)
-        fprintf(out, "%s: %s\n", severities[findings[i].severity], findings[i].text);
+        demi_print(out, "%s: %s\n", severities[findings[i].severity], findings[i].text);
     return n;
 }

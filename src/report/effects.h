@@ -19,7 +19,7 @@ DEMI_FORMAT(3, 4) static dem_effect_state demi_say(dem_effect *e, int happened, 
                                                    ...) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(e->text, sizeof e->text, format, arguments);
+    demi_words_of(e->text, sizeof e->text, format, arguments);
     va_end(arguments);
     return happened ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
@@ -551,21 +551,21 @@ static void demi_effects_lines(const dem_effect *e, FILE *out) {
     for (k = 0; k < DEM_EFFECTS; k++) {
         char share[32] = "";
         if (e[k].measured && !(e[k].error <= 0.1 && e[k].share >= -0.1 && e[k].share <= 1)) {
-            snprintf(share, sizeof share, "too noisy");
+            demi_words(share, sizeof share, "too noisy");
             noisy++;
         } else if (e[k].measured)
-            snprintf(share, sizeof share, "%5.1f %% +- %.1f", 100*e[k].share, 100*e[k].error);
-        fprintf(out, "  %-17s%-7s%-17s%s\n", e[k].name, states[e[k].state], share, e[k].text);
+            demi_words(share, sizeof share, "%5.1f %% +- %.1f", 100*e[k].share, 100*e[k].error);
+        demi_print(out, "  %-17s%-7s%-17s%s\n", e[k].name, states[e[k].state], share, e[k].text);
     }
     if (noisy)
-        fprintf(out, "  too noisy: other programs used the machine while %d of them %s measured; "
-                "measure again on a quiet machine, or with a larger budget\n", noisy,
-                noisy > 1 ? "were" : "was");
+        demi_print(out, "  too noisy: other programs used the machine while %d of them %s "
+                   "measured; measure again on a quiet machine, or with a larger budget\n", noisy,
+                   noisy > 1 ? "were" : "was");
 }
 DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     dem_effect effects[DEM_EFFECTS];
     if (demi_null_look(w, __func__, out, "out")) return;
     if (dem_effects_get(w, budget, effects) < 0) return;
-    fprintf(out, "effects, and the share of a step's time that each costs\n");
+    demi_print(out, "effects, and the share of a step's time that each costs\n");
     demi_effects_lines(effects, out);
 }

@@ -202,22 +202,22 @@ static void demi_trials_advise(dem_trials *out) {
     out->best = found < 0 ? out->reference : found;
     best = &out->trial[out->best];
     if (found < 0)
-        snprintf(out->advice, sizeof out->advice, "chance alone changes the observables by up to "
-                 "%.2g of their scale, more than the tolerance of %.2g: give a longer duration, "
-                 "more seeds, or observables that are averages", ref->promise, out->tolerance);
+        demi_words(out->advice, sizeof out->advice, "chance alone changes the observables by up to "
+                   "%.2g of their scale, more than the tolerance of %.2g: give a longer duration, "
+                   "more seeds, or observables that are averages", ref->promise, out->tolerance);
     else if (!found)
-        snprintf(out->advice, sizeof out->advice, "keep the scene as it is: all observables are "
+        demi_words(out->advice, sizeof out->advice, "keep the scene as it is: all observables are "
                  "within %.2g of those of \"%s\" (tolerance %.2g), and no trial within it saves a "
                  "tenth of the time", best->promise, ref->name, out->tolerance);
     else if (best->seconds < now)
-        snprintf(out->advice, sizeof out->advice, "use \"%s\": all observables are within %.2g of "
-                 "those of \"%s\" (tolerance %.2g), in %.2g of the time that the scene takes as "
+        demi_words(out->advice, sizeof out->advice, "use \"%s\": all observables are within %.2g "
+                 "of those of \"%s\" (tolerance %.2g), in %.2g of the time that the scene takes as "
                  "it is", best->name, best->promise, ref->name, out->tolerance, best->seconds/now);
     else
-        snprintf(out->advice, sizeof out->advice, "use \"%s\": as it is, the scene is only within "
-                 "%.2g of \"%s\" (tolerance %.2g); this trial is within %.2g, and takes %.2g "
-                 "times as long", best->name, scene->promise, ref->name, out->tolerance,
-                 best->promise, best->seconds/now);
+        demi_words(out->advice, sizeof out->advice, "use \"%s\": as it is, the scene is only "
+                   "within %.2g of \"%s\" (tolerance %.2g); this trial is within %.2g, and takes "
+                   "%.2g times as long", best->name, scene->promise, ref->name, out->tolerance,
+                   best->promise, best->seconds/now);
 }
 /* Makes all runs of one trial, each on a new copy. A run that does not start or becomes unstable is
    a result of the trial (trial->refusal) and not an error of the call: the step may be too large,
@@ -235,7 +235,7 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
         demi_try_shake(t, (uint64_t)k);
         begun = demi_clock();
         if (demi_try_run(t, out, value[k]) == DEM_OK) trial->done++;
-        else snprintf(trial->refusal, sizeof trial->refusal, "%.199s", t->error);
+        else demi_words(trial->refusal, sizeof trial->refusal, "%.199s", t->error);
         trial->dt = (double)t->clock.dt;
         wall += demi_clock() - begun;
         demi_twin_free(w, t);
@@ -400,27 +400,27 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
 DEM_API void dem_trials_print(const dem_trials *t, FILE *out) {
     int i, e;
     if (!t || !out) return;
-    fprintf(out, "trials     %d runs each of %.3g s; means of the second half +- standard error\n",
-            t->seeds, t->duration);
-    fprintf(out, "  %-20s %-9s %-9s", "", "dt [s]", "s per s");
+    demi_print(out, "trials     %d runs each of %.3g s; means of the second half +- standard "
+               "error\n", t->seeds, t->duration);
+    demi_print(out, "  %-20s %-9s %-9s", "", "dt [s]", "s per s");
     for (e = 0; e < t->observable_count; e++) {
         const dem_observable *o = &t->observables[e];
         char name[64];
-        snprintf(name, sizeof name, o->unit && *o->unit ? "%s [%s]" : "%s", o->name, o->unit);
-        fprintf(out, " %-22s", name);
+        demi_words(name, sizeof name, o->unit && *o->unit ? "%s [%s]" : "%s", o->name, o->unit);
+        demi_print(out, " %-22s", name);
     }
-    fprintf(out, " within\n");
+    demi_print(out, " within\n");
     for (i = 0; i < t->count; i++) {
         const dem_trial *trial = &t->trial[i];
-        fprintf(out, "%c %-20s %-9.3g ", i == t->best ? '*' : ' ', trial->name, trial->dt);
-        if (trial->done < t->seeds) { fprintf(out, "%.120s\n", trial->refusal); continue; }
-        fprintf(out, "%-9.3g", trial->seconds);
+        demi_print(out, "%c %-20s %-9.3g ", i == t->best ? '*' : ' ', trial->name, trial->dt);
+        if (trial->done < t->seeds) { demi_print(out, "%.120s\n", trial->refusal); continue; }
+        demi_print(out, "%-9.3g", trial->seconds);
         for (e = 0; e < t->observable_count; e++) {
             char value[64];
-            snprintf(value, sizeof value, "%.5g +- %.1g", trial->value[e], trial->error[e]);
-            fprintf(out, " %-22s", value);
+            demi_words(value, sizeof value, "%.5g +- %.1g", trial->value[e], trial->error[e]);
+            demi_print(out, " %-22s", value);
         }
-        fprintf(out, " %.2g%s\n", trial->promise, i == t->reference ? " (reference)" : "");
+        demi_print(out, " %.2g%s\n", trial->promise, i == t->reference ? " (reference)" : "");
     }
-    fprintf(out, "advice     %s\n", t->advice);
+    demi_print(out, "advice     %s\n", t->advice);
 }

@@ -147,18 +147,18 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
     const int auto_ = w->asked.search == DEM_SEARCH_AUTO;
     int i;
     if (w->desc.search == DEM_SEARCH_HIERARCHICAL && w->levels.count) {
-        fprintf(out, "           %d level%s for radii 1 : %.3g, of up to", w->levels.count,
-                w->levels.count == 1 ? "" : "s",
-                (double)w->effects.radius_max/DEMI_MAX((double)w->effects.radius_min, 1e-300));
+        demi_print(out, "           %d level%s for radii 1 : %.3g, of up to", w->levels.count,
+                   w->levels.count == 1 ? "" : "s",
+                   (double)w->effects.radius_max/DEMI_MAX((double)w->effects.radius_min, 1e-300));
         for (i = 0; i < w->levels.count; i++)
-            fprintf(out, "%s %.3g m (%d)", i ? "," : "", w->levels.level[i].radius,
-                    w->levels.level[i].count);
-        fprintf(out, "\n");
+            demi_print(out, "%s %.3g m (%d)", i ? "," : "", w->levels.level[i].radius,
+                       w->levels.level[i].count);
+        demi_print(out, "\n");
     }
     if (w->levels.tests[0] > 0)
-        fprintf(out, "           %s: %s; distance tests per body and search, estimated: %.3g with "
-                "levels, %.3g with one grid\n", auto_ ? "chosen" : "set",
-                demi_searches[w->desc.search].name, w->levels.tests[1], w->levels.tests[0]);
+        demi_print(out, "           %s: %s; distance tests per body and search, estimated: %.3g "
+                   "with levels, %.3g with one grid\n", auto_ ? "chosen" : "set",
+                   demi_searches[w->desc.search].name, w->levels.tests[1], w->levels.tests[0]);
 }
 
 /* Returns the number of persistent contacts. */
@@ -171,8 +171,8 @@ static int demi_kept_total(const dem_world *w) {
 static const char *demi_law_memory_text(const demi_law_row *row, char text[64]) {
     text[0] = 0;
     if (row->memory)
-        snprintf(text, 64, " (%d bytes of memory per neighbour pair)",
-                 row->memory*(int)sizeof(dem_real));
+        demi_words(text, 64, " (%d bytes of memory per neighbour pair)",
+                   row->memory*(int)sizeof(dem_real));
     return text;
 }
 /* Prints the contact laws in force. Of a user-defined law only its settings are known. */
@@ -192,48 +192,48 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
     if (!demi_response_is(w, DEMI_LAWS)) {
-        fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are "
+        demi_print(out, "effects    contacts are impulses, %s; gaps up to %.3g m are "
                 "included\n           last step: %d sweeps left %.3g m/s; %llu steps did not reach "
                 "their tolerance", w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
                 w->margin.reach, w->booked.sweeps, w->booked.residual,
                 (unsigned long long)w->booked.unsolved);
         if (w->solver.limited)
-            fprintf(out, "; in the last of them %d contacts were at their friction limit",
-                    w->solver.limited);
+            demi_print(out, "; in the last of them %d contacts were at their friction limit",
+                       w->solver.limited);
         fputc('\n', out);
         return;
     }
     if (w->desc.law) {
-        fprintf(out, "effects    normal, tangential, rolling: user-defined law; spins and torques "
-                "are followed; %d reals of memory per contact\n", w->desc.law_memory);
+        demi_print(out, "effects    normal, tangential, rolling: user-defined law; spins and "
+                   "torques are followed; %d reals of memory per contact\n", w->desc.law_memory);
         for (i = 0; i < w->material_count; i++)
             if (demi_law_lacks(w, i))
-                fprintf(out, "           it exerts no moment against the %s of material %d\n",
-                        demi_law_lacks(w, i), i + 1);
+                demi_print(out, "           it exerts no moment against the %s of material %d\n",
+                           demi_law_lacks(w, i), i + 1);
         if (w->margin.reach > 0)
-            fprintf(out, "           called for gaps below %.3g m, in contact or not\n",
-                    w->margin.reach);
+            demi_print(out, "           called for gaps below %.3g m, in contact or not\n",
+                       w->margin.reach);
 #ifdef DEM_LAW
         if (w->desc.law != DEM_LAW)
-            fprintf(out, "           DEM_LAW names another law than desc.law\n");
+            demi_print(out, "           DEM_LAW names another law than desc.law\n");
 #endif
-        fprintf(out, "           %s\n", demi_own_rows(w) ? "contacts of spheres row by row"
-                : w->desc.law_who ? "called contact by contact, because law_who is set: slower"
-                : "called contact by contact: slower; DEM_LAW_ROWS makes a law for rows of it");
+        demi_print(out, "           %s\n", demi_own_rows(w) ? "contacts of spheres row by row"
+                   : w->desc.law_who ? "called contact by contact, because law_who is set: slower"
+                   : "called contact by contact: slower; DEM_LAW_ROWS makes a law for rows of it");
         return;
     }
-    fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,
-            w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
-            : w->desc.tension == DEM_TENSION_COMPENSATED ? ", no tension" : "",
-            demi_law_memory_text(laws->normal, text), unused);
-    fprintf(out, "           tangential: %s%s\n", laws->tangent->name, laws->tangent->law
-            ? demi_law_memory_text(laws->tangent, text)
-            : " (no friction in any pair: no spin, no torque, no memory)");
+    demi_print(out, "effects    normal: %s%s%s%s\n", laws->normal->name,
+               w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
+               : w->desc.tension == DEM_TENSION_COMPENSATED ? ", no tension" : "",
+               demi_law_memory_text(laws->normal, text), unused);
+    demi_print(out, "           tangential: %s%s\n", laws->tangent->name, laws->tangent->law
+               ? demi_law_memory_text(laws->tangent, text)
+               : " (no friction in any pair: no spin, no torque, no memory)");
     if (laws->tangent->law)
-        fprintf(out, "           friction is limited to mu times %s; %s\n", loads[load],
-                laws->tangent->memory ? sliders[w->desc.slider] : "there is only a dashpot");
-    fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
-            demi_law_memory_text(laws->rolling, text));
+        demi_print(out, "           friction is limited to mu times %s; %s\n", loads[load],
+                   laws->tangent->memory ? sliders[w->desc.slider] : "there is only a dashpot");
+    demi_print(out, "           rolling: %s%s\n", laws->rolling->name,
+               demi_law_memory_text(laws->rolling, text));
 }
 /* Prints the options of the desc that were set and that no other line prints. */
 static void demi_options_report(const dem_world *w, FILE *out) {
@@ -244,7 +244,7 @@ static void demi_options_report(const dem_world *w, FILE *out) {
         if (!(r->how & DEMI_PRINTED) || !(fabs(demi_row_read(r, &w->asked, 0)) > 0)) continue;
         demi_row_value(r, &w->asked, value);
         demi_row_print(r, value, 0, 6, text, sizeof text);
-        fprintf(out, "%s%s %s", count++ ? ", " : "options    ", r->name, text);
+        demi_print(out, "%s%s %s", count++ ? ", " : "options    ", r->name, text);
     }
     if (count) fputc('\n', out);
 }
@@ -253,17 +253,18 @@ static void demi_options_report(const dem_world *w, FILE *out) {
 static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
     if (w->bodies.shaped && !w->effects.unlike)
-        fprintf(out, "           %d bodies are clusters of one sphere, computed as spheres: "
-                "rotation by %s\n", w->bodies.shaped, demi_rotation_rows[w->desc.rotation].name);
+        demi_print(out, "           %d bodies are clusters of one sphere, computed as spheres: "
+                   "rotation by %s\n", w->bodies.shaped, demi_rotation_rows[w->desc.rotation].name);
     else if (w->bodies.shaped)
-        fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
-                "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
+        demi_print(out, "           %d bodies are not spheres: rotation by %s; overlap of "
+                "ellipsoids %s; contacts of a cluster %s; %.2f contacts per body\n",
+                w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
                 : "are separate", w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
     else if (w->bodies.orienting)
-        fprintf(out, "           orientations of spheres are followed, because desc.orientations "
-                "is 1\n");
+        demi_print(out, "           orientations of spheres are followed, because "
+                   "desc.orientations is 1\n");
 }
 /* Prints the loads of walls and joints, and the flows of feeds and outlets. */
 static void demi_flows_report(const dem_world *w, FILE *out) {
@@ -271,69 +272,70 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     for (i = 0; i < w->wall_count; i++) {
         const dem_wall_loads *ch = &w->walls[i].loads;
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
-        fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
-                "power %.4g W\n", (int)w->walls[i].id, ch->contacts, (double)ch->force.x,
-                (double)ch->force.y, (double)ch->force.z, (double)ch->torque_axial,
-                (double)ch->power);
+        demi_print(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N "
+                   "m, power %.4g W\n", (int)w->walls[i].id, ch->contacts, (double)ch->force.x,
+                   (double)ch->force.y, (double)ch->force.z, (double)ch->torque_axial,
+                   (double)ch->power);
     }
     for (i = 0; i < w->wall_count; i++) {
         const dem_motion *m = &w->walls[i].motion;
         dem_servo s;
         if (w->walls[i].kind == DEMI_WALL_NONE || m->kind != DEM_MOTION_SERVO) continue;
         s = demi_servo_now(w, i);
-        fprintf(out, "servo %-3d  presses along (%.3g, %.3g, %.3g) m/s with %.6g N, target %.6g N, "
-                "error %.3g N; speed %.4g m/s, %.6g m from its start%s\n", (int)w->walls[i].id,
+        demi_print(out, "servo %-3d  presses along (%.3g, %.3g, %.3g) m/s with %.6g N, target %.6g "
+                "N, error %.3g N; speed %.4g m/s, %.6g m from its start%s\n", (int)w->walls[i].id,
                 (double)m->velocity.x, (double)m->velocity.y, (double)m->velocity.z, s.force,
                 s.target, s.force - s.target, s.speed, s.travel, m->travel > 0 &&
                 fabs(s.travel) >= (double)m->travel*(1 - 1e-6) ? ", the limit of its travel" : "");
     }
     if (w->cell.on)
-        fprintf(out, "cell       strain %.4g %.4g %.4g, shear %.4g; rates %.4g %.4g %.4g, "
-                "%.4g 1/s; stress %.6g %.6g %.6g Pa\n", w->cell.strain[0], w->cell.strain[1],
-                w->cell.strain[2], w->cell.sheared, w->cell.rate[0], w->cell.rate[1],
-                w->cell.rate[2], w->cell.shear, w->cell.stress[0], w->cell.stress[1],
-                w->cell.stress[2]);
+        demi_print(out, "cell       strain %.4g %.4g %.4g, shear %.4g; rates %.4g %.4g %.4g, "
+                   "%.4g 1/s; stress %.6g %.6g %.6g Pa\n", w->cell.strain[0], w->cell.strain[1],
+                   w->cell.strain[2], w->cell.sheared, w->cell.rate[0], w->cell.rate[1],
+                   w->cell.rate[2], w->cell.shear, w->cell.stress[0], w->cell.stress[1],
+                   w->cell.stress[2]);
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;
-        fprintf(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; gap %.3g "
-                "m\n", (int)w->joints[i].id, (double)demi_length(j->force),
-                (double)demi_length(j->torque), (double)j->motor_torque, (double)j->power,
-                (double)j->gap);
+        demi_print(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; gap "
+                   "%.3g m\n", (int)w->joints[i].id, (double)demi_length(j->force),
+                   (double)demi_length(j->torque), (double)j->motor_torque, (double)j->power,
+                   (double)j->gap);
     }
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;
-        fprintf(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
-                (unsigned long long)f->total, f->mass, (unsigned long long)f->waiting,
-                f->done ? "; done" : "");
+        demi_print(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
+                   (unsigned long long)f->total, f->mass, (unsigned long long)f->waiting,
+                   f->done ? "; done" : "");
     }
     for (i = 0; i < w->outlet_count; i++) {
         const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
         const dem_outlet_desc *of = &demi_outlet_at(w, i)->desc;
-        fprintf(out, "outlet %-3d %llu grains, %.6g kg%s", i + 1, (unsigned long long)o->total,
-                o->total_mass, demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed");
+        demi_print(out, "outlet %-3d %llu grains, %.6g kg%s", i + 1, (unsigned long long)o->total,
+                   o->total_mass, demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed");
         if (of->wanted_min > 0 || of->wanted_max > 0)
-            fprintf(out, ", of them wanted %llu, %.6g kg", (unsigned long long)o->sorted,
-                    o->sorted_mass);
+            demi_print(out, ", of them wanted %llu, %.6g kg", (unsigned long long)o->sorted,
+                       o->sorted_mass);
         fputc('\n', out);
     }
 }
 /* Prints the account of energy. A large residual means that the time step is too large. */
 static void demi_ledger_report(const dem_world *w, FILE *out) {
     const dem_ledger l = dem_ledger_get(w);
-    fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
+    demi_print(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
             "%.6g\n           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
             "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n",
             l.gravity, l.walls, l.force, l.inserted, l.removed, l.kinetic, l.rotational, l.elastic,
             l.normal, l.slide, l.tangent, l.rolling);
     if (l.growth < 0 || l.growth > 0)
-        fprintf(out, "           in by growing radii and changes of the scene: %.6g\n", l.growth);
+        demi_print(out, "           in by growing radii and changes of the scene: %.6g\n",
+                   l.growth);
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0))
-        fprintf(out, "           unknown to the ledger: %.3g J of your law, which does not set "
-                "force->energy\n", l.unknown);
+        demi_print(out, "           unknown to the ledger: %.3g J of your law, which does not set "
+                   "force->energy\n", l.unknown);
     else
-        fprintf(out, "           residual %.3g (%.2g of the throughput)\n", l.residual,
-                l.throughput > 0 ? l.residual/l.throughput : 0);
+        demi_print(out, "           residual %.3g (%.2g of the throughput)\n", l.residual,
+                   l.throughput > 0 ? l.residual/l.throughput : 0);
 }
 /* Prints effects that the scene contains and that have not happened so far. */
 static void demi_idle_report(dem_world *look, FILE *out) {
@@ -342,7 +344,7 @@ static void demi_idle_report(dem_world *look, FILE *out) {
     demi_effects_look(look, e);
     for (k = 0; k < DEM_EFFECTS; k++)
         if (e[k].missing)
-            fprintf(out, "           %s: %s\n", e[k].name, e[k].text);
+            demi_print(out, "           %s: %s\n", e[k].name, e[k].text);
 }
 /* Prints the report; section 11 of the manual explains its lines. */
 static void demi_report(const dem_world *world, FILE *out) {
@@ -356,45 +358,45 @@ static void demi_report(const dem_world *world, FILE *out) {
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
     if (w->crew.best && w->crew.best < c.threads)
-        snprintf(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
-    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
+        demi_words(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
+    demi_print(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR, DEM_VERSION_PATCH,
             DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", few, c.domains,
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
-    fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
-            "+ %llu left\n", w->bodies.count, (double)w->effects.radius_min,
-            (double)w->effects.radius_max, (unsigned long long)w->bodies.balance.inserted,
-            (unsigned long long)w->bodies.balance.present,
-            (unsigned long long)w->bodies.balance.removed,
-            (unsigned long long)w->bodies.balance.left);
-    fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
-            (unsigned long long)w->clock.steps, (double)w->clock.dt, demi_integrator_of(w)->name,
-            demi_integrator_of(w)->order);
+    demi_print(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu "
+               "removed + %llu left\n", w->bodies.count, (double)w->effects.radius_min,
+               (double)w->effects.radius_max, (unsigned long long)w->bodies.balance.inserted,
+               (unsigned long long)w->bodies.balance.present,
+               (unsigned long long)w->bodies.balance.removed,
+               (unsigned long long)w->bodies.balance.left);
+    demi_print(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
+               (unsigned long long)w->clock.steps, (double)w->clock.dt, demi_integrator_of(w)->name,
+               demi_integrator_of(w)->order);
     if (demi_response_is(w, DEMI_LASTING))
-        fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
-                "bound by %s\n", (double)a.contact_time,
-                w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
-                demi_dt_limit(&a), (double)a.dt_max, (double)a.rayleigh, a.binds);
+        demi_print(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
+                   "bound by %s\n", (double)a.contact_time,
+                   w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
+                   demi_dt_limit(&a), (double)a.dt_max, (double)a.rayleigh, a.binds);
     demi_held_report(w, out);
-    fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
-            "candidates, %.2f contacts\n", demi_searches[w->desc.search].name, w->margin.skin,
-            (unsigned long long)w->clock.rebuilds,
-            w->clock.rebuilds ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
-            per*c.candidates, per*c.contacts);
+    demi_print(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
+               "candidates, %.2f contacts\n", demi_searches[w->desc.search].name, w->margin.skin,
+               (unsigned long long)w->clock.rebuilds,
+               w->clock.rebuilds ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
+               per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     demi_laws_report(w, out);
     demi_options_report(w, out);
     demi_shapes_report(w, out);
-    fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
-            w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
-                ? "differ (coefficients per neighbour pair)"
-                : "of few species (coefficients per pair of species)", walls,
-            w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
-            demi_kernel_choose(w));
+    demi_print(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
+               w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
+                   ? "differ (coefficients per neighbour pair)"
+                   : "of few species (coefficients per pair of species)", walls,
+               w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
+               demi_kernel_choose(w));
     demi_idle_report(w, out);
-    fprintf(out, "overlap    %.3g of the radius at most so far%s%s\n", w->booked.overlap_max,
-            w->booked.crushed.next > 0 ? ", above 0.05 " : "",
-            demi_crushed_text(w, crushed, sizeof crushed));
+    demi_print(out, "overlap    %.3g of the radius at most so far%s%s\n", w->booked.overlap_max,
+               w->booked.crushed.next > 0 ? ", above 0.05 " : "",
+               demi_crushed_text(w, crushed, sizeof crushed));
     dem_pairs_print(w, out);
     demi_flows_report(w, out);
     if (w->desc.ledger) demi_ledger_report(w, out);

@@ -279,21 +279,22 @@ static void demi_advise_by(const dem_world *w, const demi_grades *g, dem_advice 
     out->speed = (dem_real)speed;
     out->rayleigh = (dem_real)(rayleigh < 1e300 ? rayleigh : 0);
     if (s.material < 0) {
-        snprintf(out->binds, sizeof out->binds, "no grain that moves");
+        demi_words(out->binds, sizeof out->binds, "no grain that moves");
         s.time = 0;
     } else if (s.wall)
-        snprintf(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d of "
-                 "material %d, at %.3g m/s", s.material + 1, s.radius, s.wall, s.other + 1, speed);
+        demi_words(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d "
+                   "of material %d, at %.3g m/s", s.material + 1, s.radius, s.wall, s.other + 1,
+                     speed);
     else
-        snprintf(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g m, "
-                 "at %.3g m/s", s.material + 1, s.other + 1, s.radius, s.partner, speed);
+        demi_words(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g "
+                   "m, at %.3g m/s", s.material + 1, s.other + 1, s.radius, s.partner, speed);
     out->contact_time = (dem_real)s.time;
     out->dt = (dem_real)DEMI_MIN(s.time/50, s.limit/5);
     out->dt_max = (dem_real)DEMI_MIN(s.time/20, s.limit);
     if (s.time > 0 && s.limit < s.time/20) {
         const size_t n = strlen(out->binds);
-        snprintf(out->binds + n, sizeof out->binds - n, "; stable to %.3g s because of its "
-                 "dashpot, friction or rolling", s.limit);
+        demi_words(out->binds + n, sizeof out->binds - n, "; stable to %.3g s because of its "
+                   "dashpot, friction or rolling", s.limit);
     }
 }
 static void demi_advise(const dem_world *w, dem_advice *out) {
@@ -730,8 +731,8 @@ static dem_result demi_speed_check(dem_world *w, double speed) {
             const double v = (double)demi_length(demi_at(bodies->vel + 4*i));
             if (v <= most) continue;
             most = v;
-            snprintf(who, sizeof who, "body %u, the fastest, is at %.3g m/s and",
-                     (unsigned)bodies->slot[i] + 1, v);
+            demi_words(who, sizeof who, "body %u, the fastest, is at %.3g m/s and",
+                       (unsigned)bodies->slot[i] + 1, v);
         }
     }
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
@@ -767,19 +768,20 @@ static void demi_held_report(const dem_world *w, FILE *out) {
     const demi_held *h = &w->clock.held;
     char who[64] = "a body";
     if (w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
-    fprintf(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
-            h->from/(double)w->clock.dt, h->from);
+    demi_print(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
+               h->from/(double)w->clock.dt, h->from);
     if (h->body > 0)
-        snprintf(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body, h->contacts);
+        demi_words(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body,
+                   h->contacts);
     if (h->by == DEMI_HELD_PRESSED)
-        fprintf(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
+        demi_print(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
     else if (h->by == DEMI_HELD_RATE)
-        fprintf(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
-                "that is used\n", (int)h->body, h->limit);
+        demi_print(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
+                   "that is used\n", (int)h->body, h->limit);
     else if (h->by == DEMI_HELD_SPIN)
-        fprintf(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
-    else fprintf(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
-                 "used\n", h->limit);
+        demi_print(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
+    else demi_print(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
+                    "used\n", h->limit);
 }
 /* Schedules the next examination of the present contacts: at increasing intervals while the scene
    does not change, at least every 1000 steps. With desc.law_rate at least every eight steps,

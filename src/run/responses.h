@@ -238,7 +238,7 @@ static const char *demi_crushed_text(const dem_world *w, char *text, size_t size
     const demi_crushed *c = &w->booked.crushed;
     *text = 0;
     if (c->next > 0)
-        snprintf(text, size, "since t = %.4g s, body %d, %s %d: jammed or too soft", c->since,
-                 (int)c->a, c->b ? "body" : "wall", (int)(c->b ? c->b : c->wall));
+        demi_words(text, size, "since t = %.4g s, body %d, %s %d: jammed or too soft", c->since,
+                   (int)c->a, c->b ? "body" : "wall", (int)(c->b ? c->b : c->wall));
     return text;
 }

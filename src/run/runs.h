@@ -182,12 +182,13 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     char crushed[128];
     if (line && tenths <= w->look.tenths_told) return 0;
     ((dem_world *)w)->look.tenths_told = tenths;
-    fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
-            100*done, w->clock.time, w->bodies.count, seconds_left);
+    demi_print(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
+               100*done, w->clock.time, w->bodies.count, seconds_left);
     if (w->booked.unsolved)
-        fprintf(out, "%llu steps above the tolerance   ", (unsigned long long)w->booked.unsolved);
+        demi_print(out, "%llu steps above the tolerance   ",
+                   (unsigned long long)w->booked.unsolved);
     if (*demi_crushed_text(w, crushed, sizeof crushed))
-        fprintf(out, "overlap %.2g R %s   ", w->booked.overlap_max, crushed);
+        demi_print(out, "overlap %.2g R %s   ", w->booked.overlap_max, crushed);
     if (line || done >= 1) fputc('\n', out);
     fflush(out);
     return 0;

@@ -60,7 +60,7 @@ static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why,
     *lo = (double)d->min;
     *hi = (double)d->max;
 #define DEMI_SIZE_NEEDS(good, text, value) \
-    if (!*why && !(good)) snprintf(why, room, text, value)
+    if (!*why && !(good)) demi_words(why, room, text, value)
     DEMI_SIZE_NEEDS((int)d->kind >= 0 && d->kind <= DEM_SIZES_EXPONENTIAL, "kind is %d, must be "
                     "one of the enum values", (int)d->kind);
     DEMI_SIZE_NEEDS(demi_finite(d->min) && *lo >= 0, "min is %g m, must be finite and >= 0", *lo);

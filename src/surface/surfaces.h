@@ -500,7 +500,7 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     char of[48];
     if (demi_material_index(w, __func__, a, &i) || demi_material_index(w, __func__, b, &j))
         return DEM_ERROR_ARGUMENT;
-    snprintf(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
+    demi_words(of, sizeof of, " of materials %d and %d", i + 1, j + 1);
     if (demi_rows_check(w, __func__, demi_pair_rows, p, of,
                         "start from dem_pair_get and change only what differs"))
         return DEM_ERROR_ARGUMENT;

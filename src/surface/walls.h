@@ -733,7 +733,7 @@ static dem_result demi_servo_check(dem_world *w, dem_wall id, const dem_motion *
 /* Checks a motion for the wall with this id, which need not exist yet. */
 static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
     char of[24];
-    snprintf(of, sizeof of, " of wall %d", (int)id.id);
+    demi_words(of, sizeof of, " of wall %d", (int)id.id);
     if (demi_rows_check(w, "dem_wall_motion_set", demi_motion_rows, motion, of,
                         "start from DEM_MOTION")) return DEM_ERROR_ARGUMENT;
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))

@@ -158,7 +158,7 @@ int main(int argc, char **argv) {
         for (k = 0; k < n && k < 8; k++) CHECK(!strstr(f[k].text, "modulus"));
         dem_world_destroy(w);
     }
-    TEST("dem_world_check says that a user-defined law decides about rolling and spinning friction") {
+    TEST("dem_world_check warns of a user-defined law that ignores rolling or spinning friction") {
         int law, of;
         for (law = 0; law < 2; law++)
             for (of = 0; of < 3; of++) {
@@ -181,7 +181,7 @@ int main(int argc, char **argv) {
                 }
                 dem_sphere_add(w, m, DEM_R(2e-3), at(0, 0, 0));
                 n = dem_world_check(w, f, 8);
-                for (k = 0; k < n && k < 8; k++) found += strstr(f[k].text, "desc.law decides") != 0;
+                for (k = 0; k < n && k < 8; k++) found += strstr(f[k].text, "desc.law exerts no moment") != 0;
                 CHECK_EQ(found, law && of);
                 dem_world_destroy(w);
             }
