@@ -11624,7 +11624,7 @@ static int demi_equal(double a, double b) { return !(a < b) && !(a > b); }
 static int demi_motion_turns(const dem_motion *m) {
     int k, turns = m->kind == DEM_MOTION_ROTATING;
     for (k = 0; k < m->table_count && m->kind == DEM_MOTION_TABLE; k++)
-        turns |= fabs(m->table[k].rotation.w) < 1;
+        turns |= DEMI_ABS(m->table[k].rotation.w) < 1;
     return turns;
 }
 /* True if the tables of two walls have the same rows and, if a row rotates the walls, the same
@@ -11671,7 +11671,7 @@ static int demi_wall_waits(const demi_wall *wall, double time) {
     const dem_motion *m = &wall->motion;
     if (m->kind == DEM_MOTION_FIXED || m->kind == DEM_MOTION_USER || !(time < m->start)) return 0;
     return m->kind != DEM_MOTION_TABLE || (!(demi_size(m->table->position) > 0) &&
-                                           !(fabs(m->table->rotation.w) < 1));
+                                           !(DEMI_ABS(m->table->rotation.w) < 1));
 }
 /* True if a wall is where it was when its motion was set, and does not move: it is fixed, its
    motion has not begun (wall->idle), or its speed is 0. */
@@ -12751,7 +12751,7 @@ static demi_leaf demi_leaf_of(const demi_join *j, const demi_side *s, int inside
     demi_leaf leaf;
     leaf.facet = s->facet;
     leaf.begins = (demi_join_sign(j, s) > 0) == (j->per == 2 ? !inside : inside);
-    leaf.at = atan2(y, x) + (leaf.begins ? 1 : -1)*DEMI_MIN(slack, 1e-3);
+    leaf.at = demi_atan2(y, x) + (leaf.begins ? 1 : -1)*DEMI_MIN(slack, 1e-3);
     if (leaf.at < 0) leaf.at += 2*DEMI_PI;
     return leaf;
 }
@@ -20517,7 +20517,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     }
     overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
     for (i = 0; i < f->count && overlap > 0; i++) {
-        const demi_flats_wall *part = f->part, *first = 0;
+        const demi_flats_wall *own = f->part, *first = 0;
         double weight = 0;
         int rank = 0;
         if (!demi_pressure_patch(&f->press[i], &local.q, 0, &p)) continue;
@@ -20538,12 +20538,12 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
             t->part = 0;
         }
         for (e = 0; e < f->walls; e++)
-            if (part[e].group == i) weight += demi_d3_length(part[e].force);
+            if (own[e].group == i) weight += demi_d3_length(own[e].force);
         for (e = 0; e < f->walls; e++) {
-            if (part[e].group != i || !(demi_d3_length(part[e].force) > 0)) continue;
-            if (!first) { first = &part[e]; continue; }
+            if (own[e].group != i || !(demi_d3_length(own[e].force) > 0)) continue;
+            if (!first) { first = &own[e]; continue; }
             memcpy(&out[count], &out[count - 4*(++rank)], 4*sizeof *out);
-            demi_flats_divide(&part[e], &p, weight, R, rank, &out[count]);
+            demi_flats_divide(&own[e], &p, weight, R, rank, &out[count]);
             count += 4;
         }
         if (rank) demi_flats_divide(first, &p, weight, R, 0, &out[count - 4*(rank + 1)]);

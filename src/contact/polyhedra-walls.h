@@ -164,7 +164,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
     }
     overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
     for (i = 0; i < f->count && overlap > 0; i++) {
-        const demi_flats_wall *part = f->part, *first = 0;
+        const demi_flats_wall *own = f->part, *first = 0;
         double weight = 0;
         int rank = 0;
         if (!demi_pressure_patch(&f->press[i], &local.q, 0, &p)) continue;
@@ -185,12 +185,12 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
             t->part = 0;
         }
         for (e = 0; e < f->walls; e++)
-            if (part[e].group == i) weight += demi_d3_length(part[e].force);
+            if (own[e].group == i) weight += demi_d3_length(own[e].force);
         for (e = 0; e < f->walls; e++) {
-            if (part[e].group != i || !(demi_d3_length(part[e].force) > 0)) continue;
-            if (!first) { first = &part[e]; continue; }
+            if (own[e].group != i || !(demi_d3_length(own[e].force) > 0)) continue;
+            if (!first) { first = &own[e]; continue; }
             memcpy(&out[count], &out[count - 4*(++rank)], 4*sizeof *out);
-            demi_flats_divide(&part[e], &p, weight, R, rank, &out[count]);
+            demi_flats_divide(&own[e], &p, weight, R, rank, &out[count]);
             count += 4;
         }
         if (rank) demi_flats_divide(first, &p, weight, R, 0, &out[count - 4*(rank + 1)]);

@@ -296,7 +296,7 @@ static demi_leaf demi_leaf_of(const demi_join *j, const demi_side *s, int inside
     demi_leaf leaf;
     leaf.facet = s->facet;
     leaf.begins = (demi_join_sign(j, s) > 0) == (j->per == 2 ? !inside : inside);
-    leaf.at = atan2(y, x) + (leaf.begins ? 1 : -1)*DEMI_MIN(slack, 1e-3);
+    leaf.at = demi_atan2(y, x) + (leaf.begins ? 1 : -1)*DEMI_MIN(slack, 1e-3);
     if (leaf.at < 0) leaf.at += 2*DEMI_PI;
     return leaf;
 }

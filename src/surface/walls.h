@@ -64,7 +64,7 @@ static int demi_equal(double a, double b) { return !(a < b) && !(a > b); }
 static int demi_motion_turns(const dem_motion *m) {
     int k, turns = m->kind == DEM_MOTION_ROTATING;
     for (k = 0; k < m->table_count && m->kind == DEM_MOTION_TABLE; k++)
-        turns |= fabs(m->table[k].rotation.w) < 1;
+        turns |= DEMI_ABS(m->table[k].rotation.w) < 1;
     return turns;
 }
 /* True if the tables of two walls have the same rows and, if a row rotates the walls, the same
@@ -111,7 +111,7 @@ static int demi_wall_waits(const demi_wall *wall, double time) {
     const dem_motion *m = &wall->motion;
     if (m->kind == DEM_MOTION_FIXED || m->kind == DEM_MOTION_USER || !(time < m->start)) return 0;
     return m->kind != DEM_MOTION_TABLE || (!(demi_size(m->table->position) > 0) &&
-                                           !(fabs(m->table->rotation.w) < 1));
+                                           !(DEMI_ABS(m->table->rotation.w) < 1));
 }
 /* True if a wall is where it was when its motion was set, and does not move: it is fixed, its
    motion has not begun (wall->idle), or its speed is 0. */
