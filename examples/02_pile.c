@@ -109,7 +109,7 @@ int main(int argc, char **argv) {
                   horizontally, lower log: T + T cos 30 = N sin 30, so T/N = tan 15 degrees = 0.268 <= mu
                   vertically: N = W/2 between two logs, and 3/2 W on the floor below each lower log
    Output:    slopes (mean and standard error of three runs): the second at least 2 degrees above the first, the third
-              at least 1 above the second; the smallest mu (within 3 %), by bisection: +- half the width of the last interval
+              at least 1 above the second; the smallest mu (within 3 %), by bisection: +- half of the last width
    Exercises: check an answer with ./02_pile --check N VALUE
    1  The logs do not slide on each other. How much friction must the floor have for three logs to stay?
    2  Now the lower logs are one radius apart. How much friction between logs holds the upper one? */
