@@ -437,18 +437,14 @@ static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi
     }
     return count;
 }
-/* Finds the contact manifold of two bodies. Returns the number of points, 0 if they are farther
-   apart than `range`. facet: b is flat, and its plane takes precedence. guess: the normal of the
-   last step, or 0. s: the corners that define the gap. */
-static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
-                             demi_d3 guess, demi_simplex *s, demi_spots *out) {
-    demi_d3 x[DEMI_SECTION], n = guess, back;
+/* Finds the contact manifold of two bodies with this gap along n, of the corners s. Returns the number
+   of points. facet: b is flat, and its plane takes precedence. */
+static int demi_solids_manifold(const demi_solid *a, const demi_solid *b, int facet, double range,
+                                double all, demi_d3 n, const demi_simplex *s, demi_spots *out) {
+    demi_d3 x[DEMI_SECTION], back;
     double gap[DEMI_SECTION], on_a, on_b;
-    const double all = demi_solids_gap(a, b, &n, s);
     int fa, fb, i, count = 0;
-    out->count = 0;
     out->normal = n;
-    if (!(all < range)) return 0;
     fa = demi_solid_facing(a, n, &on_a);
     fb = demi_solid_facing(b, demi_d3_scale(n, -1), &on_b);
     if (on_b >= DEMI_FLUSH && (facet || on_b > on_a + 1e-9)) {
@@ -464,4 +460,14 @@ static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet
     }
     out->gap[0] = all;
     return out->count = 1;
+}
+/* The same, or 0 if they are farther apart than `range`. guess: the normal of the last step, or 0.
+   s: on return the corners that define the gap. */
+static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
+                             demi_d3 guess, demi_simplex *s, demi_spots *out) {
+    demi_d3 n = guess;
+    const double all = demi_solids_gap(a, b, &n, s);
+    out->count = 0;
+    out->normal = n;
+    return all < range ? demi_solids_manifold(a, b, facet, range, all, n, s, out) : 0;
 }

@@ -352,16 +352,76 @@ static int demi_facet_nearest(const demi_view *start, dem_vec3 x, const dem_vec3
     }
     return 1;
 }
-/* Finds the points of a body above a facet, on the side of its centre, as if the facet were
-   infinite. Returns their number. */
-static int demi_facet_under(const demi_solid *s, const demi_solid *f, double range,
-                            demi_spots *out) {
+/* True if a facet with the normal n, of either sign, has the point q, of the body's frame, on it. */
+static int demi_facets_have(const demi_view *start, demi_d3 n, demi_d3 q, double near) {
+    demi_view v = *start;
+    demi_half sides[3];
+    demi_d3 up;
+    double at;
+    int i, k, count;
+    while (demi_view_next(&v)) for (i = 0; i < v.count; i++) {
+        const dem_real *plane = v.wall->planes + 4*v.element[i];
+        if (!(fabs(demi_d3_dot(n, demi_d3_of(demi_at(plane)))) > 1 - 1e-9)) continue;
+        count = demi_facet_sides(v.wall, v.element[i], v.x, 1, &up, &at, sides);
+        if (!count || fabs(demi_d3_dot(up, q) - at) > near) continue;
+        for (k = 0; k < count; k++)
+            if (demi_d3_dot(demi_d3_unit(sides[k].n), demi_d3_sub(q, sides[k].o)) < -near) break;
+        if (k == count) return 1;
+    }
+    return 0;
+}
+/* True if q, in the plane of a facet, is on sides of it beyond which other facets continue its
+   plane: a point of a seam, where the surface has no edge. */
+static int demi_facet_seam(const demi_view *start, const demi_view *v, int element, demi_d3 q,
+                           double near) {
+    demi_half sides[3];
+    demi_d3 n;
+    double at;
+    const int count = demi_facet_sides(v->wall, element, v->x, 1, &n, &at, sides);
+    int k, on = 0;
+    for (k = 0; k < count; k++) {
+        const demi_d3 in = demi_d3_unit(sides[k].n);
+        if (demi_d3_dot(in, demi_d3_sub(q, sides[k].o)) > near) continue;
+        on = 1;
+        if (!demi_facets_have(start, n, demi_d3_plus(q, -10*near, in), near)) return 0;
+    }
+    return on;
+}
+/* Adds the points of a body above a face of a facet, as if that were infinite: corners, and points
+   above its sides unless these are seams. Impacts on a floor thus do not depend on the number of its
+   facets. Returns the number of points within range, seams included. */
+static int demi_facet_points(const demi_view *start, const demi_view *v, int element,
+                             const demi_solid *s, const demi_solid *f, int side, demi_gaps *gaps) {
     demi_d3 x[DEMI_SECTION], up;
     double gap[DEMI_SECTION];
-    const int side = demi_d3_dot(f->face[0].slope, f->corner[0]) > 0;
-    const int count = demi_faces_over(f, side, s, x, gap, &up);
-    out->normal = demi_d3_scale(up, -1);
-    return demi_spots_take(out, x, gap, count, range, up);
+    const double near = DEMI_TOUCHING*demi_solid_radius(s) + (double)v->wall->plane_slack;
+    int count = demi_faces_over(f, side, s, x, gap, &up), face = count, i, k, e, some = 0;
+    for (k = 0; k < s->corners && count < DEMI_SECTION; k++) {     /* those of other faces */
+        const demi_d3 c = s->corner[k];
+        gap[count] = demi_d3_dot(up, demi_d3_sub(c, f->corner[0]));
+        x[count] = demi_d3_plus(c, -gap[count]/2, up);
+        if (!(gap[count] < gaps->range)) continue;
+        for (i = 0; i < face; i++)
+            if (!(demi_d3_length(demi_d3_sub(x[i], x[count])) > near)) break;
+        if (i < face) continue;
+        for (e = f->rim[side]; e < f->rim[side + 1]; e++) {
+            const demi_d3 o = demi_solid_corner(f, side, e);
+            const demi_d3 to = demi_d3_sub(demi_solid_corner(f, side, e + 1), o);
+            if (demi_d3_dot(demi_d3_cross(up, to), demi_d3_sub(c, o)) < 0) break;
+        }
+        count += e == f->rim[side + 1];
+    }
+    for (i = 0; i < count; i++) {
+        const demi_d3 c = demi_d3_plus(x[i], gap[i]/2, up);
+        if (!(gap[i] < gaps->range)) continue;
+        some++;
+        for (k = 0; k < s->corners && i < face; k++)
+            if (!(demi_d3_length(demi_d3_sub(s->corner[k], c)) > near)) break;
+        if (k < s->corners || i >= face ||
+            !demi_facet_seam(start, v, element, demi_d3_plus(c, -gap[i], up), near))
+            demi_gaps_add(gaps, element + v->base, demi_d3_scale(up, -1), x[i], gap[i]);
+    }
+    return some;
 }
 /* False if all corners of a body about x are at least `range` (m) from the plane of an element, on
    the side of x. */
@@ -374,21 +434,29 @@ static int demi_facet_in_reach(const demi_wall *wall, int element, dem_vec3 x, c
     return !(-way*off - demi_d3_dot(demi_d3_scale(n, way), s->corner[far]) > range +
              (double)wall->plane_slack);
 }
-/* Adds the gaps of one facet. start: all facets nearby; v: those of this image. If the body is
-   slightly inside, beside an edge at which the surface continues, the shortest separation would
-   lead across that edge into the facet beyond. The facet is then treated as infinite. */
+/* Adds the gaps of one facet. start: all facets nearby; v: those of this image. Beside an edge at
+   which the surface continues towards the body, the shortest separation is not that of the surface,
+   and would lead across that edge if the body is slightly inside. The facet is then treated as
+   infinite, for laws with a range only if the body is inside. */
 static void demi_element_gaps(const demi_view *start, const demi_view *v, int element,
                               const demi_solid *s, double reach, demi_gaps *gaps) {
     const demi_wall *wall = v->wall;
     demi_simplex tells;
     demi_solid f;
     demi_spots spots;
+    demi_d3 n = demi_d(0, 0, 0);
     dem_vec3 y[3], own[3];
+    double gap, along;
     int i, k, owns = 0, has[3] = {0, 0, 0};
     if (!demi_facet_in_reach(wall, element, v->x, s, gaps->range) ||
-        !demi_facet_solid(wall, element, v->x, reach, &f) ||
-        !demi_solids_spots(s, &f, 1, gaps->range, demi_d(0, 0, 0), &tells, &spots)) return;
-    if (fabs(demi_d3_dot(spots.normal, f.face[0].slope)) < DEMI_FLUSH) {
+        !demi_facet_solid(wall, element, v->x, reach, &f)) return;
+    gap = demi_solids_gap(s, &f, &n, &tells);
+    if (!(gap < gaps->range)) return;
+    along = demi_d3_dot(n, f.face[0].slope);
+    if (fabs(along) >= DEMI_FLUSH && demi_facet_points(start, v, element, s, &f, along > 0, gaps))
+        return;
+    demi_solids_manifold(s, &f, 1, gaps->range, gap, n, &tells, &spots);
+    if (fabs(along) < DEMI_FLUSH) {
         const int strip = f.corners == 4;       /* two of its corners are one of the profile */
         demi_wall_corners(wall, element, y);
         for (i = 0; i < tells.count; i++) {
@@ -399,8 +467,12 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
             has[k] = 1;
         }
         if (owns < (strip ? 2 : 3) &&
-            !demi_facet_nearest(start, v->x, own, owns, spots.normal) &&
-            (!(spots.gap[0] < 0) || !demi_facet_under(s, &f, gaps->range, &spots))) return;
+            !demi_facet_nearest(start, v->x, own, owns, spots.normal)) {
+            if (spots.gap[0] < 0 || !demi_response_is(start->w, DEMI_PRESSING))
+                demi_facet_points(start, v, element, s, &f,
+                                  demi_d3_dot(f.face[0].slope, f.corner[0]) > 0, gaps);
+            return;
+        }
     }
     for (i = 0; i < spots.count; i++)
         demi_gaps_add(gaps, element + v->base, spots.normal, spots.x[i], spots.gap[i]);
