@@ -437,8 +437,8 @@ static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi
     }
     return count;
 }
-/* Finds the contact manifold of two bodies with this gap along n, of the corners s. Returns the number
-   of points. facet: b is flat, and its plane takes precedence. */
+/* Finds the contact manifold of two bodies with the gap `all` along n, which the corners s define.
+   Returns the number of points. facet: b is flat, and its plane takes precedence. */
 static int demi_solids_manifold(const demi_solid *a, const demi_solid *b, int facet, double range,
                                 double all, demi_d3 n, const demi_simplex *s, demi_spots *out) {
     demi_d3 x[DEMI_SECTION], back;

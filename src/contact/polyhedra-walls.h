@@ -352,7 +352,7 @@ static int demi_facet_nearest(const demi_view *start, dem_vec3 x, const dem_vec3
     }
     return 1;
 }
-/* True if a facet with the normal n, of either sign, has the point q, of the body's frame, on it. */
+/* True if q, from the centre of the body, is on a facet with the normal n, of either sign. */
 static int demi_facets_have(const demi_view *start, demi_d3 n, demi_d3 q, double near) {
     demi_view v = *start;
     demi_half sides[3];
@@ -387,9 +387,9 @@ static int demi_facet_seam(const demi_view *start, const demi_view *v, int eleme
     }
     return on;
 }
-/* Adds the points of a body above a face of a facet, as if that were infinite: corners, and points
-   above its sides unless these are seams. Impacts on a floor thus do not depend on the number of its
-   facets. Returns the number of points within range, seams included. */
+/* Adds the points of a body above a face of a facet, with gaps from its plane: corners of the body,
+   and points above sides of the facet that are no seams. Thus the division of a floor into facets
+   changes nothing. Returns the number of points within range, those of seams included. */
 static int demi_facet_points(const demi_view *start, const demi_view *v, int element,
                              const demi_solid *s, const demi_solid *f, int side, demi_gaps *gaps) {
     demi_d3 x[DEMI_SECTION], up;
