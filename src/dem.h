@@ -240,6 +240,7 @@
 #include "contact/polyhedra-sieves.h"
 #include "contact/ellipsoids.h"
 #include "contact/meets.h"
+#include "contact/flush.h"
 #include "contact/kept.h"
 #include "contact/kept-respond.h"
 #include "contact/members.h"

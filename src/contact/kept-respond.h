@@ -38,6 +38,7 @@ static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
 /* Copies the history from the contact that c continues. */
 DEM_INLINE void demi_kept_recall(const dem_world *w, const demi_kept *now, demi_kept *c) {
     int e;
+    if (c->from == DEMI_TAKEN_OVER) return;
     for (e = 0; e < w->memory_stride; e++) {
         DEMI_ONE_BY_ONE(e);                     /* no call of memcpy for so few */
         c->memory[e] = c->from < 0 ? 0 : now[c->from].memory[e];

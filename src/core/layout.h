@@ -196,7 +196,8 @@ typedef struct demi_kept {
     int32_t send;                  /* pair: 1 + entry of cross_force for the force on b; 0: b is in
                                       this work group. Wall: 1 + old contact that ended and whose
                                       springs this one takes over; 0: none */
-    int32_t from;                  /* old contact of its group that it continues; -1: none */
+    int32_t from;                  /* old contact of its group that it continues; -1: none;
+                                      -2: memory is set (>>flush) */
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */

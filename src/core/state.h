@@ -509,6 +509,9 @@ struct dem_world {
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
     demi_coefs_row *coefs;         /* of group d from 2*kept_first[d] on, see demi_kept_row */
+    /* >>flush */
+    int flush_valid, flush_count;  /* the next two fit the list of candidates; entries of flush_with */
+    int32_t *flush_start, *flush_with;   /* of each body; bodies */
     /* >>near */
     demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of
