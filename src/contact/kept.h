@@ -409,6 +409,7 @@ static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const de
         w->domains[d].kept_next--;
     else if (spots.count ? !demi_kept_points(w, d, c, p, q, &spots, old, olds)
              : c->corners && !demi_kept_spread(w, d, c, old, olds)) return 0;
+    else if (w->flush_count && !spots.count) demi_flush_follow(w, c, p, q);
     return 1;
 }
 /* Appends the contact of two spheres of neighbouring bodies if they touch; most do not. one, other:
