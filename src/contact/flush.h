@@ -13,11 +13,14 @@
    By springs the pressure of a polyhedron acts on the faces of all that have faces in common, as on
    those of a wall.
 
-   The table lists, for every fixed polyhedron by slot, the others that it touches: twice their slot,
-   plus 1 if the two have a part of a face in common. It is made again if one of them is another, or
-   elsewhere, when a list of candidates was made. This part owns the flush_... fields of dem_world.
+   The table has a row for each fixed polyhedron, with its pieces and links to the others that it
+   touches. It is made again if one of them is another, or elsewhere, when a list of candidates was
+   made. Slabs get that of the whole scene, because a body may touch one that is in another slab.
+   This part owns w->flush.
    --------------------------------------------------------------------------------------------- */
 
+/* A piece of a fixed body; part.shape is not valid, shape is its index. */
+typedef struct demi_flush_piece { demi_part part; int32_t shape; } demi_flush_piece;
 /* c->from of a contact that has taken over the history of another one, c->memory. */
 enum { DEMI_TAKEN_OVER = -2 };
 /* True if body i is fixed and consists of polyhedra. */
@@ -37,30 +40,30 @@ static void demi_flush_box(const dem_world *w, int i, double *middle, double *ha
         half[k] = (hi - lo)/2 + hair;
     }
 }
-/* The other bodies that fixed body b touches are entries begin .. end - 1 of the table. */
-DEM_INLINE int demi_flush_begin(const dem_world *w, int b) {
-    return w->flush_start[w->bodies.slot[b]];
+/* The row of a fixed body; null: it touches no other one. */
+static const demi_flush_row *demi_flush_of(const dem_world *w, int b) {
+    const uint32_t slot = w->bodies.slot[b];
+    const int n = (int)slot < w->flush.slots && demi_flush_is(w, b) ? w->flush.of[slot] : -1;
+    return n < 0 || w->flush.rows[n].from == w->flush.rows[n].to ? 0 : &w->flush.rows[n];
 }
-DEM_INLINE int demi_flush_end(const dem_world *w, int b) {
-    return w->flush_start[w->bodies.slot[b] + 1];
-}
-DEM_INLINE int demi_flush_body(const dem_world *w, int k) {
-    return w->bodies.slot_index[w->flush_with[k] >> 1];
-}
-/* True if the two have a part of a face in common. */
-DEM_INLINE int demi_flush_faced(const dem_world *w, int k) { return w->flush_with[k] & 1; }
-/* True if fixed body b has a face in common with another one. */
-static int demi_flush_jointed(const dem_world *w, int b) {
+/* True if a body has a face in common with another one. */
+static int demi_flush_faced(const dem_world *w, const demi_flush_row *b) {
     int k;
-    for (k = demi_flush_begin(w, b); k < demi_flush_end(w, b); k++)
-        if (demi_flush_faced(w, k)) return 1;
+    for (k = b->from; k < b->to; k++) if (w->flush.links[k].faced) return 1;
     return 0;
 }
-/* The distance, m, below which fixed bodies b and o count as touching. */
-static double demi_flush_tiny(const dem_world *w, int b, int o) {
-    const dem_real far = demi_length(demi_at(w->bodies.pos + 4*b));
-    return 1e-6*(double)(w->bodies.pos[4*b + 3] + w->bodies.pos[4*o + 3]) +
-        (DEMI_SINGLE ? 5e-7 : 1e-15)*(double)far;
+/* The distance, m, below which two bodies count as touching. */
+static double demi_flush_tiny(const demi_flush_row *b, const demi_flush_row *o) {
+    return 1e-6*(double)(b->radius + o->radius) +
+        (DEMI_SINGLE ? 5e-7 : 1e-15)*(double)demi_length(b->at);
+}
+/* Sets q to piece j of a body whose centre is at `at`. Returns 0 if it is no polyhedron. */
+static int demi_flush_piece_of(const dem_world *w, const demi_flush_row *b, int j, dem_vec3 at,
+                               demi_part *q) {
+    *q = w->flush.pieces[b->first + j].part;
+    q->centre = demi_add(q->centre, at);
+    q->shape = &w->shapes[w->flush.pieces[b->first + j].shape];
+    return q->kind == DEMI_POLYHEDRON;
 }
 /* True if face f of s and face g of t are in one plane, with opposite normals. */
 static int demi_faces_opposite(const demi_solid *s, int f, const demi_solid *t, int g,
@@ -100,32 +103,36 @@ static int demi_solids_faced(const demi_solid *s, const demi_solid *t, double ti
         }
     return 0;
 }
-/* Returns how fixed bodies i and o touch: 1 in a part of a face, 0 in edges or corners or by an
-   overlap, -1 not at all. way: m, from i to o. */
-static int demi_flush_how(const dem_world *w, int i, int o, dem_vec3 way) {
-    const double tiny = demi_flush_tiny(w, i, o);
+/* Returns how two bodies touch: 1 in a part of a face, 0 in edges or corners or by an overlap, -1
+   not at all. way: m, from b to o. */
+static int demi_flush_how(const dem_world *w, const demi_flush_row *b, const demi_flush_row *o,
+                          dem_vec3 way) {
+    const double tiny = demi_flush_tiny(b, o);
     int k, j, how = -1;
-    for (k = 0; k < demi_parts_count(w, i); k++)
-        for (j = 0; j < demi_parts_count(w, o) && how < 1; j++) {
-            const demi_part p = demi_part_now(w, i, k), q = demi_part_now(w, o, j);
+    for (k = 0; k < b->count; k++)
+        for (j = 0; j < o->count && how < 1; j++) {
             demi_d3 n = demi_d(0, 0, 0);
-            demi_simplex s;
-            demi_solid a, b;
-            if (p.kind != DEMI_POLYHEDRON || q.kind != DEMI_POLYHEDRON) continue;
-            demi_solid_of(&p, p.centre, &a);
-            demi_solid_of(&q, demi_add(way, q.centre), &b);
-            if (demi_solids_apart(&a, &b, tiny, &n, &s) && demi_solids_slab(&a, &b, n) > tiny)
-                continue;
-            how = demi_solids_faced(&a, &b, tiny);
+            demi_simplex simplex;
+            demi_solid s, t;
+            demi_part p, q;
+            if (!demi_flush_piece_of(w, b, k, demi_v(0, 0, 0), &p) ||
+                !demi_flush_piece_of(w, o, j, way, &q)) continue;
+            demi_solid_of(&p, p.centre, &s);
+            demi_solid_of(&q, q.centre, &t);
+            if (demi_solids_apart(&s, &t, tiny, &n, &simplex) &&
+                demi_solids_slab(&s, &t, n) > tiny) continue;
+            how = demi_solids_faced(&s, &t, tiny);
         }
     return how;
 }
-/* Appends to the table the bodies that the one of box n touches; `of` are the bodies of the boxes.
-   Returns 0 if memory ran out. */
-static int demi_flush_beside(dem_world *w, const demi_tree *tree, const int32_t *of, int n) {
+/* Adds to row n its links to those whose boxes it touches. Returns 0 if memory ran out. */
+static int demi_flush_link_up(dem_world *w, const demi_tree *tree, int n) {
     const demi_periods p = demi_periods_of(w);
     const double *half = tree->half + 3*n, most = DEMI_MAX(half[0], DEMI_MAX(half[1], half[2]));
-    int code, k, how;
+    demi_flush *f = &w->flush;
+    demi_flush_row *b = &f->rows[n];
+    int code, k;
+    b->from = f->link_count;
     for (code = 0; code < 27; code++) {
         const int c[3] = {code%3 - 1, code/3%3 - 1, code/9 - 1};
         demi_search_line line;
@@ -137,92 +144,126 @@ static int demi_flush_beside(dem_world *w, const demi_tree *tree, const int32_t 
         x[0] += c[1]*(double)p.offset;
         demi_tree_line(&line, tree, x, x, most);
         while ((other = demi_tree_next(&line)) >= 0) {
-            const dem_vec3 way = demi_sub(demi_at(w->bodies.pos + 4*of[other]),
-                                          demi_at(w->bodies.pos + 4*of[n]));
+            demi_flush_link link;
             for (k = 0; k < 3; k++)
                 if (fabs(tree->x[3*other + k] - x[k]) > tree->half[3*other + k] + half[k]) break;
             if (k < 3 || other == n) continue;
-            how = demi_flush_how(w, of[n], of[other], demi_nearest(&p, way));
-            if (how < 0) continue;
-            if (!DEMI_GROW(w, w->flush_with, (size_t)w->flush_count + 1)) return 0;
-            w->flush_with[w->flush_count++] = 2*(int32_t)w->bodies.slot[of[other]] + how;
+            link.to = other;
+            link.way = demi_nearest(&p, demi_sub(f->rows[other].at, b->at));
+            link.faced = demi_flush_how(w, b, &f->rows[other], link.way);
+            if (link.faced < 0) continue;
+            if (!DEMI_GROW(w, f->links, (size_t)f->link_count + 1)) return 0;
+            f->links[f->link_count++] = link;
         }
     }
+    b->to = f->link_count;
+    return 1;
+}
+/* Adds a row for fixed body i, without links. Returns 0 if memory ran out. */
+static int demi_flush_add(dem_world *w, int i) {
+    demi_flush *f = &w->flush;
+    demi_flush_row *b = &f->rows[f->count];
+    int k;
+    b->slot = (int32_t)w->bodies.slot[i];
+    b->material = w->bodies.material[i];
+    b->first = f->piece_count;
+    b->count = demi_parts_count(w, i);
+    b->at = demi_at(w->bodies.pos + 4*i);
+    b->radius = w->bodies.pos[4*i + 3];
+    if (!DEMI_GROW(w, f->pieces, (size_t)(f->piece_count + b->count))) return 0;
+    for (k = 0; k < b->count; k++) {
+        demi_flush_piece *piece = &f->pieces[f->piece_count++];
+        piece->part = demi_part_of(w, i, k);
+        piece->shape = (int32_t)(piece->part.shape - w->shapes);
+    }
+    f->of[b->slot] = f->count++;
     return 1;
 }
 /* A digest of all bodies that the table is about; *count receives their number. */
 static uint64_t demi_flush_digest(const dem_world *w, int *count) {
     uint64_t digest = UINT64_C(14695981039346656037);
     int slot, k;
-    for (slot = *count = 0; slot < w->bodies.slot_count; slot++) {
+    for (slot = *count = 0; slot < w->bodies.slot_count && w->bodies.shaped; slot++) {
         const int i = w->bodies.slot_index[slot];
-        double x[9];
-        const unsigned char *at = (const unsigned char *)x;
+        const unsigned char *at;
+        double x[11];
         if (i < 0 || !demi_flush_is(w, i)) continue;
         for (k = 0; k < 4; k++) x[k] = (double)w->bodies.pos[4*i + k];
         for (k = 0; k < 4; k++) x[4 + k] = (double)w->bodies.orient[4*i + k];
-        x[8] = slot + w->bodies.shape[i]*4294967296.0;
-        for (k = 0; k < (int)sizeof x; k++) digest = (digest ^ at[k])*UINT64_C(1099511628211);
+        x[8] = slot;
+        x[9] = w->bodies.shape[i];
+        x[10] = w->bodies.material[i];
+        for (at = (const unsigned char *)x, k = 0; k < (int)sizeof x; k++)
+            digest = (digest ^ at[k])*UINT64_C(1099511628211);
         ++*count;
     }
     return digest;
 }
 /* Makes the table, unless it fits. Returns 0 if memory ran out. */
 static int demi_flush_make(dem_world *w) {
-    const int some = w->bodies.shaped && w->effects.fixed_count > 1;
+    demi_flush *f = &w->flush;
     double *box = 0;
-    int32_t *of = 0;
     demi_tree tree;
-    int slot, n = 0, boxes, ok;
-    const uint64_t digest = some ? demi_flush_digest(w, &n) : 0;
-    w->flush_valid = 1;
-    if (digest == w->flush_digest) return 1;
+    int slot, k, n = 0, ok;
+    const uint64_t digest = w->bodies.ghost ? f->digest : demi_flush_digest(w, &n);
+    f->valid = 1;
+    if (digest == f->digest) return 1;
     memset(&tree, 0, sizeof tree);
-    w->flush_count = 0;
-    w->flush_digest = digest;
+    f->count = f->piece_count = f->link_count = f->slots = 0;
+    f->digest = digest;
     if (n < 2) return 1;
     ok = demi_grow(w, DEMI_LOOSE, &box, sizeof *box, 6*(size_t)n) &&
-        demi_grow(w, DEMI_LOOSE, &of, sizeof *of, (size_t)n) &&
-        DEMI_GROW(w, w->flush_start, (size_t)w->bodies.slot_count + 1);
-    for (slot = boxes = 0; slot < w->bodies.slot_count && ok; slot++) {
+        DEMI_GROW(w, f->rows, (size_t)n) && DEMI_GROW(w, f->of, (size_t)w->bodies.slot_count);
+    for (slot = 0; slot < w->bodies.slot_count && ok; slot++) {
         const int i = w->bodies.slot_index[slot];
+        f->of[slot] = -1;
         if (i < 0 || !demi_flush_is(w, i)) continue;
-        demi_flush_box(w, i, box + 3*boxes, box + 3*(n + boxes));
-        of[boxes++] = i;
+        demi_flush_box(w, i, box + 3*f->count, box + 3*(n + f->count));
+        ok = demi_flush_add(w, i);
     }
     tree.half = box + 3*n;
     ok = ok && demi_tree_make(w, &tree, box, n);
-    for (slot = boxes = 0; slot < w->bodies.slot_count && ok; slot++) {
-        w->flush_start[slot] = w->flush_count;
-        if (boxes < n && (int)w->bodies.slot[of[boxes]] == slot)
-            ok = demi_flush_beside(w, &tree, of, boxes++);
-    }
-    if (ok) w->flush_start[slot] = w->flush_count;
-    else w->flush_digest = 0;
+    for (k = 0; k < n && ok; k++) ok = demi_flush_link_up(w, &tree, k);
+    if (ok) f->slots = w->bodies.slot_count;
+    else f->digest = 0;
+    if (!ok || !f->link_count) f->count = 0;
     demi_free(w, box);
-    demi_free(w, of);
     demi_tree_free(w, &tree);
-    return w->flush_valid = ok;
+    return f->valid = ok;
+}
+/* Gives a slab the table of the whole scene. Returns 0 if memory ran out. */
+static int demi_flush_share(dem_world *to, const dem_world *from) {
+    demi_flush *f = &to->flush;
+    const demi_flush *own = &from->flush;
+    if (!DEMI_COPY(to, f->rows, own->rows, own->count) ||
+        !DEMI_COPY(to, f->pieces, own->pieces, own->piece_count) ||
+        !DEMI_COPY(to, f->links, own->links, own->link_count) ||
+        !DEMI_COPY(to, f->of, own->of, own->slots)) return 0;
+    f->count = own->count;
+    f->piece_count = own->piece_count;
+    f->link_count = own->link_count;
+    f->slots = own->slots;
+    return 1;
 }
 
 /* --- what another body covers. a, p: a body and its part, about whose centre positions are; b, j:
-   a fixed body and its part --- */
+   the row of a fixed body and its piece; way: m, to its centre --- */
 
-/* From the centre of p to that of the fixed body, m. */
+/* From the centre of p to that of a fixed body, m. */
 static dem_vec3 demi_flush_way(const dem_world *w, int a, const demi_part *p, int b) {
     const demi_periods periods = demi_periods_of(w);
     return demi_sub(demi_nearest(&periods, demi_sub(demi_at(w->bodies.pos + 4*b),
                                                     demi_at(w->bodies.pos + 4*a))), p->centre);
 }
-/* Sets s to the part of the fixed body as p sees it: scaled, if p is an ellipsoid, so that this is
-   the unit sphere. Returns 0 if it is no polyhedron or farther from p than `reach`, m. */
-static int demi_flush_solid(const dem_world *w, int a, const demi_part *p, int b, int j,
-                            dem_real reach, demi_solid *s) {
-    const demi_part q = demi_part_now(w, b, j);
-    const dem_vec3 gap = demi_add(demi_flush_way(w, a, p, b), q.centre);
-    if (q.kind != DEMI_POLYHEDRON || !(demi_length(gap) < reach + q.radius)) return 0;
-    if (p->kind == DEMI_ELLIPSOID) demi_solid_measure(&q, p, gap, s);
-    else demi_solid_of(&q, gap, s);
+/* Sets s to a piece of a fixed body as p sees it: scaled, if p is an ellipsoid, so that this is the
+   unit sphere. Returns 0 if it is no polyhedron or farther from p than `reach`, m. */
+static int demi_flush_solid(const dem_world *w, const demi_part *p, const demi_flush_row *b, int j,
+                            dem_vec3 way, dem_real reach, demi_solid *s) {
+    demi_part q;
+    if (!demi_flush_piece_of(w, b, j, way, &q) ||
+        !(demi_length(q.centre) < reach + q.radius)) return 0;
+    if (p->kind == DEMI_ELLIPSOID) demi_solid_measure(&q, p, q.centre, s);
+    else demi_solid_of(&q, q.centre, s);
     if (w->desc.planar && demi_response_is(w, DEMI_PRESSING)) demi_solid_stretch(s);
     return 1;
 }
@@ -233,67 +274,69 @@ static int demi_solid_about(const demi_solid *s, demi_d3 x, double tiny) {
         if (!(demi_solid_in(s, f, x)*s->face[f].high > -tiny)) return 0;
     return 1;
 }
-/* True if fixed body b comes before fixed body o: on an axis on which they differ. */
-static int demi_flush_first(const dem_world *w, int b, int o) {
-    const demi_periods p = demi_periods_of(w);
-    const dem_vec3 d = demi_nearest(&p, demi_sub(demi_at(w->bodies.pos + 4*o),
-                                                 demi_at(w->bodies.pos + 4*b)));
-    if (d.x > 0 || d.x < 0) return d.x > 0;
-    if (d.y > 0 || d.y < 0) return d.y > 0;
-    return d.z > 0 || (!(d.z < 0) && w->bodies.slot[b] < w->bodies.slot[o]);
+/* True if the body at the end of a link comes before that at its begin. */
+static int demi_flush_before(const demi_flush_link *l) {
+    if (l->way.x > 0 || l->way.x < 0) return l->way.x < 0;
+    if (l->way.y > 0 || l->way.y < 0) return l->way.y < 0;
+    return l->way.z < 0;
 }
-/* True if body a ignores body o. */
-static int demi_flush_ignores(const dem_world *w, int a, int o) {
+static int demi_flush_ignores(const dem_world *w, int a, const demi_flush_row *o) {
     return w->effects.ignoring &&
-        demi_ignores(w, w->bodies.material[a] - 1, w->bodies.material[o] - 1);
+        demi_ignores(w, w->bodies.material[a] - 1, o->material - 1);
+}
+/* How far from p pieces may matter, m. */
+static dem_real demi_flush_reach(const dem_world *w, const demi_part *p, const demi_flush_row *b) {
+    return 2*p->radius + 2*demi_range(w, p->radius + b->radius);
 }
 /* True if another fixed body covers the point of b nearest to p, a sphere or an ellipsoid. */
-static int demi_flush_covers(const dem_world *w, int a, const demi_part *p, int b, int j) {
-    const dem_real reach = 2*p->radius + 2*demi_range(w, p->radius + w->bodies.pos[4*b + 3]);
+static int demi_flush_covers(const dem_world *w, int a, const demi_part *p,
+                             const demi_flush_row *b, int j, dem_vec3 way) {
+    const dem_real reach = demi_flush_reach(w, p, b);
     demi_solid s, t;
     demi_d3 x, y;
-    double off = 0;
+    double off, even;
     int k, i;
-    for (k = demi_flush_begin(w, b); k < demi_flush_end(w, b); k++) {
-        const int o = demi_flush_body(w, k), parts = demi_parts_count(w, o);
-        if (demi_flush_ignores(w, a, o)) continue;
-        if (!(off > 0 || off < 0)) {
-            if (!demi_flush_solid(w, a, p, b, j, reach, &s)) return 0;
-            off = demi_solid_near(&s, demi_d(0, 0, 0), &x);
-        }
-        for (i = 0; i < parts; i++) {
+    if (!demi_flush_solid(w, p, b, j, way, reach, &s)) return 0;
+    off = demi_solid_near(&s, demi_d(0, 0, 0), &x);
+    even = (DEMI_SINGLE ? 1e-6 : 1e-13)*(fabs(off) + demi_d3_length(s.centre));
+    for (k = b->from; k < b->to; k++) {
+        const demi_flush_link *l = &w->flush.links[k];
+        const demi_flush_row *o = &w->flush.rows[l->to];
+        for (i = 0; i < o->count && !demi_flush_ignores(w, a, o); i++) {
             double its;
-            if (!demi_flush_solid(w, a, p, o, i, reach, &t) ||
-                !demi_solid_about(&t, x, demi_flush_tiny(w, b, o))) continue;
+            if (!demi_flush_solid(w, p, o, i, demi_add(way, l->way), reach, &t) ||
+                !demi_solid_about(&t, x, demi_flush_tiny(b, o))) continue;
             its = demi_solid_near(&t, demi_d(0, 0, 0), &y);
-            if (its < off || (!(off < its) && demi_flush_first(w, o, b))) return 1;
+            if (its < off - even || (its <= off + even && demi_flush_before(l))) return 1;
         }
     }
     return 0;
 }
 /* True if another fixed body continues where polyhedron p touches b at x, with the normal n from p
    to b (unit). */
-static int demi_flush_continues(const dem_world *w, int a, const demi_part *p, int b, int j,
-                                demi_d3 x, demi_d3 n) {
-    const dem_real reach = 2*p->radius + 2*demi_range(w, p->radius + w->bodies.pos[4*b + 3]);
+static int demi_flush_continues(const dem_world *w, int a, const demi_part *p,
+                                const demi_flush_row *b, int j, dem_vec3 way, demi_d3 x,
+                                demi_d3 n) {
+    const dem_real reach = demi_flush_reach(w, p, b);
     const demi_d3 out = demi_d3_scale(n, -1);
     demi_solid s, t;
     double along;
     int k, i, c, f;
-    if (demi_flush_begin(w, b) == demi_flush_end(w, b) || !demi_flush_solid(w, a, p, b, j, reach, &s))
-        return 0;
+    if (!demi_flush_solid(w, p, b, j, way, reach, &s)) return 0;
     f = demi_solid_facing(&s, out, &along);
     if (along >= DEMI_FLUSH) {                  /* a little into the face */
+        const double part = 1.0/(s.rim[f + 1] - s.rim[f]);
         demi_d3 middle = demi_d(0, 0, 0);
         for (i = s.rim[f]; i < s.rim[f + 1]; i++)
-            middle = demi_d3_plus(middle, 1.0/(s.rim[f + 1] - s.rim[f]), demi_solid_corner(&s, f, i));
+            middle = demi_d3_plus(middle, part, demi_solid_corner(&s, f, i));
         x = demi_d3_between(x, middle, 1e-3);
     }
-    for (k = demi_flush_begin(w, b); k < demi_flush_end(w, b); k++) {
-        const int o = demi_flush_body(w, k), parts = demi_parts_count(w, o);
-        for (i = 0; i < parts && !demi_flush_ignores(w, a, o); i++) {
-            if (!demi_flush_solid(w, a, p, o, i, reach, &t) ||
-                !demi_solid_about(&t, x, demi_flush_tiny(w, b, o))) continue;
+    for (k = b->from; k < b->to; k++) {
+        const demi_flush_link *l = &w->flush.links[k];
+        const demi_flush_row *o = &w->flush.rows[l->to];
+        for (i = 0; i < o->count && !demi_flush_ignores(w, a, o); i++) {
+            if (!demi_flush_solid(w, p, o, i, demi_add(way, l->way), reach, &t) ||
+                !demi_solid_about(&t, x, demi_flush_tiny(b, o))) continue;
             if (along >= DEMI_FLUSH) return 1;
             for (c = 0; c < t.corners; c++) {
                 const demi_d3 to = demi_d3_sub(t.corner[c], x);
@@ -303,18 +346,41 @@ static int demi_flush_continues(const dem_world *w, int a, const demi_part *p, i
     }
     return 0;
 }
-/* Removes points of contact c of polyhedra p and q where a fixed body has an inner face. gap: from
-   p's centre to q's, m. Returns the number of the others. */
-static int demi_flush_spots(const dem_world *w, const demi_kept *c, const demi_part *p,
-                            const demi_part *q, dem_vec3 gap, demi_spots *spots) {
-    const int first = demi_flush_is(w, c->a);   /* the fixed one */
-    const demi_d3 off = first ? demi_d3_of(gap) : demi_d(0, 0, 0);
-    const demi_d3 n = demi_d3_scale(spots->normal, first ? -1 : 1);
+/* The bodies of a contact, one of which is fixed: that one's row, null if it touches no other one;
+   the free one, its part, and the way to the fixed one's centre. */
+typedef struct demi_flush_pair {
+    const demi_flush_row *row;
+    const demi_part *part;
+    dem_vec3 way;
+    int first, a, of, piece;       /* first: the fixed one is a of the contact; a, of: the free one
+                                      and its part's number */
+} demi_flush_pair;
+static demi_flush_pair demi_flush_pair_of(const dem_world *w, const demi_kept *c,
+                                          const demi_part *p, const demi_part *q) {
+    demi_flush_pair o;
+    int b;
+    memset(&o, 0, sizeof o);
+    o.first = w->bodies.inv_mass[c->a] <= 0;
+    b = o.first ? c->a : c->b;
+    if ((o.first ? p : q)->kind == DEMI_POLYHEDRON) o.row = demi_flush_of(w, b);
+    if (!o.row) return o;
+    o.a = o.first ? c->b : c->a;
+    o.of = o.first ? c->part_b : c->part_a;
+    o.piece = o.first ? c->part_a : c->part_b;
+    o.part = o.first ? q : p;
+    o.way = demi_flush_way(w, o.a, o.part, b);
+    return o;
+}
+/* Removes points of a contact of polyhedra where the fixed body has an inner face. gap: m, from the
+   centre of the first one to that of the other. Returns the number of the others. */
+static int demi_flush_spots(const dem_world *w, const demi_flush_pair *o, dem_vec3 gap,
+                            demi_spots *spots) {
+    const demi_d3 off = o->first ? demi_d3_of(gap) : demi_d(0, 0, 0);
+    const demi_d3 n = demi_d3_scale(spots->normal, o->first ? -1 : 1);
     int k, left = 0;
     for (k = 0; k < spots->count; k++) {
         const demi_d3 x = demi_d3_plus(demi_d3_sub(spots->x[k], off), spots->gap[k]/2, n);
-        if (first ? demi_flush_continues(w, c->b, q, c->a, c->part_a, x, n)
-            : demi_flush_continues(w, c->a, p, c->b, c->part_b, x, n)) continue;
+        if (demi_flush_continues(w, o->a, o->part, o->row, o->piece, o->way, x, n)) continue;
         spots->x[left] = spots->x[k];
         spots->gap[left++] = spots->gap[k];
     }
@@ -344,57 +410,64 @@ static void demi_flush_face(const demi_solid *s, const demi_solid *t, int f,
     if (other) demi_pressure_scale(&press, -1);
     demi_pressure_add(out, &press);
 }
-/* Sets *out to the pressure of p (s: about its centre) on part i of fixed body o: on its faces
+/* Sets *out to the pressure of p (s: about its centre) on piece i of fixed body o: on its faces
    without what others cover. */
 static void demi_flush_part(const dem_world *w, int a, const demi_part *p, const demi_solid *s,
-                            int o, int i, demi_pressure *out) {
+                            const demi_flush_row *o, int i, dem_vec3 way, demi_pressure *out) {
     demi_solid t, other;
     int f, g, k, j;
     memset(out, 0, sizeof *out);
-    if (!demi_flush_solid(w, a, p, o, i, p->radius, &t)) return;
+    if (!demi_flush_solid(w, p, o, i, way, p->radius, &t)) return;
     for (f = 0; f < t.faces; f++) demi_flush_face(s, &t, f, 0, 0, out);
     if (demi_solid_holds(&t, s->centre))
         demi_pressure_beyond(s, demi_d3_unit(t.centre), out);
-    for (k = demi_flush_begin(w, o); k < demi_flush_end(w, o) && out->sum > 0; k++) {
-        const int b = demi_flush_body(w, k);
-        const int parts = demi_flush_faced(w, k) ? demi_parts_count(w, b) : 0;
-        const double tiny = demi_flush_tiny(w, o, b);
-        for (j = 0; j < parts && !demi_flush_ignores(w, a, b); j++) {
-            if (!demi_flush_solid(w, a, p, b, j, p->radius, &other)) continue;
+    for (k = o->from; k < o->to && out->sum > 0; k++) {
+        const demi_flush_link *l = &w->flush.links[k];
+        const demi_flush_row *b = &w->flush.rows[l->to];
+        if (!l->faced || demi_flush_ignores(w, a, b)) continue;
+        for (j = 0; j < b->count; j++) {
+            if (!demi_flush_solid(w, p, b, j, demi_add(way, l->way), p->radius, &other)) continue;
             for (f = 0; f < t.faces; f++)
                 for (g = 0; g < other.faces; g++)
-                    if (demi_faces_opposite(&t, f, &other, g, tiny))
+                    if (demi_faces_opposite(&t, f, &other, g, demi_flush_tiny(o, b)))
                         demi_flush_face(s, &t, f, &other, g, out);
         }
     }
 }
-/* Sets *out to the pressure of polyhedron p on part j of fixed body b, which others touch, and on
-   all that belong to the same surface near p. Returns 0 if there is none on b. */
-static int demi_flush_pressed(const dem_world *w, int a, const demi_part *p, int b, int j,
+/* Sets *out to the pressure of polyhedron p on piece j of fixed body b, and on all that belong to
+   the same surface near p. Returns 0 if there is none on b. */
+static int demi_flush_pressed(const dem_world *w, const demi_flush_pair *c,
                               demi_flush_press *out) {
-    int32_t near[DEMI_FLUSH_NEAR];
+    const demi_part *p = c->part;
+    int32_t found[DEMI_FLUSH_NEAR];
+    dem_vec3 way[DEMI_FLUSH_NEAR];
     demi_pressure press;
     demi_solid s;
     int n, i, k, m, count = 1;
     demi_solid_of(p, demi_v(0, 0, 0), &s);
-    demi_flush_part(w, a, p, &s, b, j, &out->own);
+    demi_flush_part(w, c->a, p, &s, c->row, c->piece, c->way, &out->own);
     out->shared = out->force = 0;
     if (!(out->own.sum > 0)) return 0;
-    for (near[0] = b, n = 0; n < count; n++) {
-        const int o = near[n], parts = demi_parts_count(w, o);
-        for (i = 0; i < parts; i++) {
-            if (o == b && i == j) press = out->own;
-            else demi_flush_part(w, a, p, &s, o, i, &press);
+    found[0] = (int32_t)(c->row - w->flush.rows);
+    way[0] = c->way;
+    for (n = 0; n < count; n++) {
+        const demi_flush_row *o = &w->flush.rows[found[n]];
+        for (i = 0; i < o->count; i++) {
+            if (!n && i == c->piece) press = out->own;
+            else demi_flush_part(w, c->a, p, &s, o, i, way[n], &press);
             out->shared += press.shared;
             out->force += demi_d3_length(press.force);
         }
-        for (k = demi_flush_begin(w, o); k < demi_flush_end(w, o); k++) {
-            const int next = demi_flush_body(w, k);
-            const dem_vec3 way = demi_flush_way(w, a, p, next);
-            for (m = 0; m < count && near[m] != next; m++) continue;
-            if (m == count && m < DEMI_FLUSH_NEAR && demi_flush_faced(w, k) &&
-                !demi_flush_ignores(w, a, next) &&
-                demi_length(way) < p->radius + w->bodies.pos[4*next + 3]) near[count++] = next;
+        for (k = o->from; k < o->to; k++) {
+            const demi_flush_link *l = &w->flush.links[k];
+            const demi_flush_row *next = &w->flush.rows[l->to];
+            const dem_vec3 to = demi_add(way[n], l->way);
+            for (m = 0; m < count && found[m] != l->to; m++) continue;
+            if (m < count || m == DEMI_FLUSH_NEAR || !l->faced ||
+                demi_flush_ignores(w, c->a, next) ||
+                !(demi_length(to) < p->radius + next->radius)) continue;
+            found[count] = l->to;
+            way[count++] = to;
         }
     }
     return out->shared > 0 && demi_d3_length(out->own.force) > 1e-9*out->force;
@@ -415,24 +488,30 @@ static const demi_kept *demi_flush_old(const dem_world *w, int a, const demi_kep
     }
     return old + lo;
 }
-/* Lets a new contact c of part p of body a with a fixed body b continue an old one of p with another
-   fixed body, at nearly the same normal: of spheres and ellipsoids one that b now covers. */
-static void demi_flush_take_over(const dem_world *w, int a, const demi_part *p, int part, int b,
-                                 demi_kept *c) {
-    const demi_kept *best = 0, *o, *end;
+/* Lets a new contact c of two bodies (o) continue an old one of the free body with another fixed
+   body, at nearly the same normal: of spheres and ellipsoids one that is covered now. */
+static void demi_flush_take_over(const dem_world *w, const demi_flush_pair *o, demi_kept *c) {
+    const demi_kept *best = 0, *old, *end;
     dem_real most = DEM_R(0.95), turn = 1;
     int k, e;
-    for (k = demi_flush_begin(w, b); k < demi_flush_end(w, b); k++) {
-        const int other = demi_flush_body(w, k), low = DEMI_MIN(a, other), high = DEMI_MAX(a, other);
-        for (o = demi_flush_old(w, low, &end); o < end && o->a == low; o++) {
-            const dem_real side = (o->a == a) == (c->a == a) ? DEM_R(1) : DEM_R(-1);
-            const dem_real along = side*demi_dot(o->normal, c->normal);
-            if (o->b != high || (o->a == a ? o->part_a : o->part_b) != part || !(along > most) ||
-                (c->corners ? o->corner != (side > 0 ? c->corner : c->corner ^ 1)
-                 : !demi_flush_covers(w, a, p, other, o->a == a ? o->part_b : o->part_a)))
-                continue;
+    for (k = o->row->from; k < o->row->to; k++) {
+        const demi_flush_link *l = &w->flush.links[k];
+        const demi_flush_row *row = &w->flush.rows[l->to];
+        const int other = w->bodies.slot_index[row->slot];
+        if (other < 0) continue;                /* in another slab */
+        old = demi_flush_old(w, DEMI_MIN(o->a, other), &end);
+        for (; old < end && old->a == DEMI_MIN(o->a, other); old++) {
+            const int swapped = (old->a == o->a) == o->first;
+            const dem_real side = swapped ? DEM_R(-1) : DEM_R(1);
+            const dem_real along = side*demi_dot(old->normal, c->normal);
+            if (old->b != DEMI_MAX(o->a, other) || !(along > most) ||
+                (old->a == o->a ? old->part_a : old->part_b) != o->of ||
+                (c->corners ? old->corner != (swapped ? c->corner ^ 1 : c->corner)
+                 : !demi_flush_covers(w, o->a, o->part, row,
+                                      old->a == o->a ? old->part_b : old->part_a,
+                                      demi_add(o->way, l->way)))) continue;
             most = along;
-            best = o;
+            best = old;
             turn = side;
         }
     }
@@ -441,31 +520,24 @@ static void demi_flush_take_over(const dem_world *w, int a, const demi_part *p, 
         c->memory[e] = w->vector_mask >> e & 1 ? turn*best->memory[e] : best->memory[e];
     c->from = DEMI_TAKEN_OVER;
 }
-/* The same for all points of a new contact c of parts p and q. */
+/* The same for all points of a contact c of parts p and q. */
 static void demi_flush_follow(const dem_world *w, demi_kept *c, const demi_part *p,
                               const demi_part *q) {
-    const int first = demi_flush_is(w, c->a), points = DEMI_MAX(c->corners, 1);
+    const int points = DEMI_MAX(c->corners, 1);
+    demi_flush_pair o;
     int i;
-    if (!(first || (c->b >= 0 && demi_flush_is(w, c->b))) || c->from >= 0) return;
-    for (i = 0; i < points; i++)
-        if (c[i].from < 0)
-            demi_flush_take_over(w, first ? c->b : c->a, first ? q : p,
-                                 first ? c->part_b : c->part_a, first ? c->a : c->b, &c[i]);
+    if (c->from >= 0) return;
+    o = demi_flush_pair_of(w, c, p, q);
+    for (i = 0; i < points && o.row; i++)
+        if (c[i].from < 0) demi_flush_take_over(w, &o, &c[i]);
 }
 /* True if contact c of parts p and q, which have just been found to touch, is none of the common
    surface of fixed bodies. gap: from p's centre to q's, m; spots: its points, if it has several. */
 static int demi_flush_within(const dem_world *w, const demi_kept *c, const demi_part *p,
                              const demi_part *q, dem_vec3 gap, demi_spots *spots) {
-    const int first = demi_flush_is(w, c->a);
-    if (!(first || demi_flush_is(w, c->b)) || (first ? p : q)->kind != DEMI_POLYHEDRON) return 0;
-    if (spots->count) return !demi_flush_spots(w, c, p, q, gap, spots);
-    if ((first ? q : p)->kind == DEMI_POLYHEDRON) return 0;
-    return first ? demi_flush_covers(w, c->b, q, c->a, c->part_a)
-        : demi_flush_covers(w, c->a, p, c->b, c->part_b);
-}
-/* True if one of the bodies of contact c of two polyhedra is fixed and has faces in common with
-   another. */
-static int demi_flush_surface(const dem_world *w, const demi_kept *c) {
-    return (demi_flush_is(w, c->a) && demi_flush_jointed(w, c->a)) ||
-        (demi_flush_is(w, c->b) && demi_flush_jointed(w, c->b));
+    const demi_flush_pair o = demi_flush_pair_of(w, c, p, q);
+    if (!o.row) return 0;
+    if (spots->count) return !demi_flush_spots(w, &o, gap, spots);
+    return o.part->kind != DEMI_POLYHEDRON &&
+        demi_flush_covers(w, o.a, o.part, o.row, o.piece, o.way);
 }

@@ -405,11 +405,11 @@ static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const de
     if (!demi_meet_of(p->kind, q->kind)(w, p, q, gap, c->from < 0 ? 0 : now[c->from].lambda, c,
                                         &spots))
         w->domains[d].kept_next--;
-    else if (w->flush_count && demi_flush_within(w, c, p, q, gap, &spots))
+    else if (w->flush.count && demi_flush_within(w, c, p, q, gap, &spots))
         w->domains[d].kept_next--;
     else if (spots.count ? !demi_kept_points(w, d, c, p, q, &spots, old, olds)
              : c->corners && !demi_kept_spread(w, d, c, old, olds)) return 0;
-    else if (w->flush_count && !spots.count) demi_flush_follow(w, c, p, q);
+    else if (w->flush.count && !spots.count) demi_flush_follow(w, c, p, q);
     return 1;
 }
 /* Appends the contact of two spheres of neighbouring bodies if they touch; most do not. one, other:
@@ -887,7 +887,7 @@ static int demi_touch(dem_world *w) {
     if (!w->wall_count && !w->bodies.shaped && !w->effects.clustered) return 1;
     if ((!w->facets_valid && !demi_surfaces_make(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w)) ||
-        (!w->flush_valid && !demi_flush_make(w))) return 0;
+        (!w->flush.valid && !demi_flush_make(w))) return 0;
     demi_surfaces_follow(w);
     do {
         demi_domains_do(w, demi_domain_kept_touch);

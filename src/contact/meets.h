@@ -183,22 +183,19 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
 }
 /* A polyhedron and a fixed one that has faces in common with others: by its pressure on their common
    surface. c becomes the first of four contact points, which have this body's part of the force. */
-static int demi_flush_meet(const dem_world *w, const demi_part *p, const demi_part *q,
-                           dem_vec3 gap, demi_kept *c, demi_spots *spots) {
-    const int first = demi_flush_is(w, c->a);   /* the fixed one */
-    const demi_part *own = first ? q : p;
-    const double r = demi_part_equal(own);
+static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const demi_part *p,
+                           const demi_part *q, dem_vec3 gap, demi_kept *c, demi_spots *spots) {
+    const double r = demi_part_equal(o->part);
     demi_flush_press press;
     demi_kept_more *more;
     demi_patch at;
     double overlap;
     if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)) ||
-        !(first ? demi_flush_pressed(w, c->b, q, c->a, c->part_a, &press)
-          : demi_flush_pressed(w, c->a, p, c->b, c->part_b, &press)) ||
-        !demi_pressure_patch(&press.own, &own->q, 0, &at))
+        !demi_flush_pressed(w, o, &press) ||
+        !demi_pressure_patch(&press.own, &o->part->q, 0, &at))
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     overlap = demi_shared_overlap(press.shared, r);
-    c->normal = first ? demi_scale(at.normal, -1) : at.normal;
+    c->normal = o->first ? demi_scale(at.normal, -1) : at.normal;
     c->overlap = (dem_real)overlap;
     c->slope = (dem_real)demi_shared_slope(press.force, r, overlap);
     c->deep = (dem_real)press.own.deep;
@@ -209,8 +206,8 @@ static int demi_flush_meet(const dem_world *w, const demi_part *p, const demi_pa
     more->part = c->share;
     more->couple = at.couple;
     more->spread = at.spread[0];
-    more->aside = demi_scale(at.spread[1], first ? DEM_R(-1) : DEM_R(1));
-    c->arm_a = demi_add(p->centre, first ? demi_add(gap, at.point) : at.point);
+    more->aside = demi_scale(at.spread[1], o->first ? DEM_R(-1) : DEM_R(1));
+    c->arm_a = demi_add(p->centre, o->first ? demi_add(gap, at.point) : at.point);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
@@ -224,8 +221,11 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_pressure s;
     double overlap;
     (void)lambda;
-    if (w->flush_count && demi_response_is(w, DEMI_PRESSING) && demi_flush_surface(w, c))
-        return demi_flush_meet(w, p, q, gap, c, spots);
+    if (w->flush.count && demi_response_is(w, DEMI_PRESSING)) {
+        const demi_flush_pair o = demi_flush_pair_of(w, c, p, q);
+        if (o.row && demi_flush_faced(w, o.row))
+            return demi_flush_meet(w, &o, p, q, gap, c, spots);
+    }
     if (!demi_response_is(w, DEMI_PRESSING) || demi_face_keeps(p, q, gap) ||
         demi_face_keeps(q, p, demi_scale(gap, -1)))
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);

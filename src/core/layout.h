@@ -228,6 +228,27 @@ typedef struct demi_coefs_row {
     dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
 } demi_coefs_row;
 
+/* Fixed polyhedra that touch (>>flush): a body, with its pieces and links; from one body to another that
+   it touches. */
+typedef struct demi_flush_row {
+    dem_vec3 at;                   /* m */
+    dem_real radius;               /* m, of the bounding sphere */
+    int32_t slot, material, first, count, from, to;    /* first piece, number; links from .. to - 1 */
+} demi_flush_row;
+typedef struct demi_flush_link {
+    dem_vec3 way;                  /* m, between their centres */
+    int32_t to, faced;             /* row; 1: they have a part of a face in common */
+} demi_flush_link;
+typedef struct demi_flush {
+    int valid, count, slots;       /* 1: it fits the list of candidates; rows, 0: no links; slots */
+    int piece_count, link_count;
+    int32_t *of;                   /* the row of each slot, or -1 */
+    demi_flush_row *rows;
+    struct demi_flush_piece *pieces;
+    demi_flush_link *links;
+    uint64_t digest;               /* of the bodies that it was made for */
+} demi_flush;
+
 /* Force (N), torque (Nm), power (W) and contacts that the grains of one work group exert on one
    wall in one step. */
 typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; } demi_wall_sum;

@@ -509,10 +509,7 @@ struct dem_world {
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
     demi_coefs_row *coefs;         /* of group d from 2*kept_first[d] on, see demi_kept_row */
-    /* >>flush */
-    int flush_valid, flush_count;  /* 1: the table fits the list of candidates; entries */
-    int32_t *flush_start, *flush_with;   /* first entry of each slot; entries */
-    uint64_t flush_digest;         /* of the bodies that it was made for */
+    demi_flush flush;              /* >>flush */
     /* >>near */
     demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of

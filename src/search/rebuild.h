@@ -483,7 +483,7 @@ static void demi_lists_made(dem_world *w) {
     w->clock.last_rebuild = w->clock.steps;
     w->clock.rebuilds++;
     w->stage.list_valid = 1;
-    w->flush_valid = 0;
+    w->flush.valid = 0;
 }
 /* Rebuilds everything that a step needs to find contacts: makes the checks, sorts the bodies,
    builds the lists and moves the contact histories to them. After DEM_ERROR_MEMORY no body and no

@@ -125,7 +125,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         (from->bodies.orienting && !demi_orient_begin(w)) ||
         !demi_slab_shapes(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
-        !demi_slab_outlets_copy(w, from)) return w;
+        !demi_slab_outlets_copy(w, from) || !demi_flush_share(w, from)) return w;
     s->head.shapes = w->shapes;                 /* for the grains of feeds */
     s->head.shape_count = w->shape_count;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
@@ -316,7 +316,7 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
         return 0;
     /* files the contact histories; the world keeps its list */
-    if (w->stage.list_valid && !demi_carry_collect(w)) {
+    if (!demi_flush_make(w) || (w->stage.list_valid && !demi_carry_collect(w))) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
     }
