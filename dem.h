@@ -4503,7 +4503,8 @@ typedef struct demi_kept {
     int32_t send;                  /* pair: 1 + entry of cross_force for the force on b; 0: b is in
                                       this work group. Wall: 1 + old contact that ended and whose
                                       springs this one takes over; 0: none */
-    int32_t from;                  /* old contact of its group that it continues; -1: none */
+    int32_t from;                  /* old contact of its group that it continues; -1: none;
+                                      -2: memory is set (>>flush) */
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
@@ -4533,6 +4534,27 @@ typedef struct demi_coefs_row {
     dem_real m_eff;                /* kg, of a sphere on a wall; 0: differs between contacts */
     dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
 } demi_coefs_row;
+
+/* Fixed polyhedra that touch (>>flush): a body, with its pieces and links; from one body to another that
+   it touches. */
+typedef struct demi_flush_row {
+    dem_vec3 at;                   /* m */
+    dem_real radius;               /* m, of the bounding sphere */
+    int32_t slot, material, first, count, from, to;    /* first piece, number; links from .. to - 1 */
+} demi_flush_row;
+typedef struct demi_flush_link {
+    dem_vec3 way;                  /* m, between their centres */
+    int32_t to, faced;             /* row; 1: they have a part of a face in common */
+} demi_flush_link;
+typedef struct demi_flush {
+    int valid, count, slots;       /* 1: it fits the list of candidates; rows, 0: no links; slots */
+    int piece_count, link_count;
+    int32_t *of;                   /* the row of each slot, or -1 */
+    demi_flush_row *rows;
+    struct demi_flush_piece *pieces;
+    demi_flush_link *links;
+    uint64_t digest;               /* of the bodies that it was made for */
+} demi_flush;
 
 /* Force (N), torque (Nm), power (W) and contacts that the grains of one work group exert on one
    wall in one step. */
@@ -5382,6 +5404,7 @@ struct dem_world {
     int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
     demi_kept *kept_now, *kept_next;
     demi_coefs_row *coefs;         /* of group d from 2*kept_first[d] on, see demi_kept_row */
+    demi_flush flush;              /* >>flush */
     /* >>near */
     demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
     dem_real *species_coef;        /* row a*species_count + b: the DEMI_PAIR_COLUMNS coefficients of
@@ -16958,6 +16981,7 @@ static void demi_lists_made(dem_world *w) {
     w->clock.last_rebuild = w->clock.steps;
     w->clock.rebuilds++;
     w->stage.list_valid = 1;
+    w->flush.valid = 0;
 }
 /* Rebuilds everything that a step needs to find contacts: makes the checks, sorts the bodies,
    builds the lists and moves the contact histories to them. After DEM_ERROR_MEMORY no body and no
@@ -19739,18 +19763,14 @@ static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi
     }
     return count;
 }
-/* Finds the contact manifold of two bodies. Returns the number of points, 0 if they are farther
-   apart than `range`. facet: b is flat, and its plane takes precedence. guess: the normal of the
-   last step, or 0. s: the corners that define the gap. */
-static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
-                             demi_d3 guess, demi_simplex *s, demi_spots *out) {
-    demi_d3 x[DEMI_SECTION], n = guess, back;
+/* Finds the contact manifold of two bodies with the gap `all` along n, which the corners s define.
+   Returns the number of points. facet: b is flat, and its plane takes precedence. */
+static int demi_solids_manifold(const demi_solid *a, const demi_solid *b, int facet, double range,
+                                double all, demi_d3 n, const demi_simplex *s, demi_spots *out) {
+    demi_d3 x[DEMI_SECTION], back;
     double gap[DEMI_SECTION], on_a, on_b;
-    const double all = demi_solids_gap(a, b, &n, s);
     int fa, fb, i, count = 0;
-    out->count = 0;
     out->normal = n;
-    if (!(all < range)) return 0;
     fa = demi_solid_facing(a, n, &on_a);
     fb = demi_solid_facing(b, demi_d3_scale(n, -1), &on_b);
     if (on_b >= DEMI_FLUSH && (facet || on_b > on_a + 1e-9)) {
@@ -19766,6 +19786,16 @@ static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet
     }
     out->gap[0] = all;
     return out->count = 1;
+}
+/* The same, or 0 if they are farther apart than `range`. guess: the normal of the last step, or 0.
+   s: on return the corners that define the gap. */
+static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
+                             demi_d3 guess, demi_simplex *s, demi_spots *out) {
+    demi_d3 n = guess;
+    const double all = demi_solids_gap(a, b, &n, s);
+    out->count = 0;
+    out->normal = n;
+    return all < range ? demi_solids_manifold(a, b, facet, range, all, n, s, out) : 0;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -20503,11 +20533,11 @@ static void demi_flats_divide(const demi_flats_wall *part, const demi_patch *p, 
         t[k].turn = demi_rotate(R, demi_d3_real(turn));
     }
 }
-/* Writes the contact points of all groups, found in a frame of axes R. Returns their number. */
+/* Writes the contact points of all groups, found in a frame of axes R, in which the part is given.
+   Returns their number. */
 static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
                              const demi_part *part, demi_touching *out) {
     const double r = demi_part_equal(part);
-    const demi_part local = demi_part_local(R, part);
     double shared = 0, force = 0, overlap;
     demi_patch p;
     int i, k, e, count = 0;
@@ -20520,7 +20550,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
         const demi_flats_wall *own = f->part, *first = 0;
         double weight = 0;
         int rank = 0;
-        if (!demi_pressure_patch(&f->press[i], &local.q, 0, &p)) continue;
+        if (!demi_pressure_patch(&f->press[i], &part->q, 0, &p)) continue;
         for (k = 0; k < 4; k++) {
             demi_touching *t = &out[count++];
             t->element = f->element[i];
@@ -20705,16 +20735,76 @@ static int demi_facet_nearest(const demi_view *start, dem_vec3 x, const dem_vec3
     }
     return 1;
 }
-/* Finds the points of a body above a facet, on the side of its centre, as if the facet were
-   infinite. Returns their number. */
-static int demi_facet_under(const demi_solid *s, const demi_solid *f, double range,
-                            demi_spots *out) {
+/* True if q, from the centre of the body, is on a facet with the normal n, of either sign. */
+static int demi_facets_have(const demi_view *start, demi_d3 n, demi_d3 q, double near) {
+    demi_view v = *start;
+    demi_half sides[3];
+    demi_d3 up;
+    double at;
+    int i, k, count;
+    while (demi_view_next(&v)) for (i = 0; i < v.count; i++) {
+        const dem_real *plane = v.wall->planes + 4*v.element[i];
+        if (!(fabs(demi_d3_dot(n, demi_d3_of(demi_at(plane)))) > 1 - 1e-9)) continue;
+        count = demi_facet_sides(v.wall, v.element[i], v.x, 1, &up, &at, sides);
+        if (!count || fabs(demi_d3_dot(up, q) - at) > near) continue;
+        for (k = 0; k < count; k++)
+            if (demi_d3_dot(demi_d3_unit(sides[k].n), demi_d3_sub(q, sides[k].o)) < -near) break;
+        if (k == count) return 1;
+    }
+    return 0;
+}
+/* True if q, in the plane of a facet, is on sides of it beyond which other facets continue its
+   plane: a point of a seam, where the surface has no edge. */
+static int demi_facet_seam(const demi_view *start, const demi_view *v, int element, demi_d3 q,
+                           double near) {
+    demi_half sides[3];
+    demi_d3 n;
+    double at;
+    const int count = demi_facet_sides(v->wall, element, v->x, 1, &n, &at, sides);
+    int k, on = 0;
+    for (k = 0; k < count; k++) {
+        const demi_d3 in = demi_d3_unit(sides[k].n);
+        if (demi_d3_dot(in, demi_d3_sub(q, sides[k].o)) > near) continue;
+        on = 1;
+        if (!demi_facets_have(start, n, demi_d3_plus(q, -10*near, in), near)) return 0;
+    }
+    return on;
+}
+/* Adds the points of a body above a face of a facet, with gaps from its plane: corners of the body,
+   and points above sides of the facet that are no seams. Thus the division of a floor into facets
+   changes nothing. Returns the number of points within range, those of seams included. */
+static int demi_facet_points(const demi_view *start, const demi_view *v, int element,
+                             const demi_solid *s, const demi_solid *f, int side, demi_gaps *gaps) {
     demi_d3 x[DEMI_SECTION], up;
     double gap[DEMI_SECTION];
-    const int side = demi_d3_dot(f->face[0].slope, f->corner[0]) > 0;
-    const int count = demi_faces_over(f, side, s, x, gap, &up);
-    out->normal = demi_d3_scale(up, -1);
-    return demi_spots_take(out, x, gap, count, range, up);
+    const double near = DEMI_TOUCHING*demi_solid_radius(s) + (double)v->wall->plane_slack;
+    int count = demi_faces_over(f, side, s, x, gap, &up), face = count, i, k, e, some = 0;
+    for (k = 0; k < s->corners && count < DEMI_SECTION; k++) {     /* those of other faces */
+        const demi_d3 c = s->corner[k];
+        gap[count] = demi_d3_dot(up, demi_d3_sub(c, f->corner[0]));
+        x[count] = demi_d3_plus(c, -gap[count]/2, up);
+        if (!(gap[count] < gaps->range)) continue;
+        for (i = 0; i < face; i++)
+            if (!(demi_d3_length(demi_d3_sub(x[i], x[count])) > near)) break;
+        if (i < face) continue;
+        for (e = f->rim[side]; e < f->rim[side + 1]; e++) {
+            const demi_d3 o = demi_solid_corner(f, side, e);
+            const demi_d3 to = demi_d3_sub(demi_solid_corner(f, side, e + 1), o);
+            if (demi_d3_dot(demi_d3_cross(up, to), demi_d3_sub(c, o)) < 0) break;
+        }
+        count += e == f->rim[side + 1];
+    }
+    for (i = 0; i < count; i++) {
+        const demi_d3 c = demi_d3_plus(x[i], gap[i]/2, up);
+        if (!(gap[i] < gaps->range)) continue;
+        some++;
+        for (k = 0; k < s->corners && i < face; k++)
+            if (!(demi_d3_length(demi_d3_sub(s->corner[k], c)) > near)) break;
+        if (k < s->corners || i >= face ||
+            !demi_facet_seam(start, v, element, demi_d3_plus(c, -gap[i], up), near))
+            demi_gaps_add(gaps, element + v->base, demi_d3_scale(up, -1), x[i], gap[i]);
+    }
+    return some;
 }
 /* False if all corners of a body about x are at least `range` (m) from the plane of an element, on
    the side of x. */
@@ -20727,21 +20817,29 @@ static int demi_facet_in_reach(const demi_wall *wall, int element, dem_vec3 x, c
     return !(-way*off - demi_d3_dot(demi_d3_scale(n, way), s->corner[far]) > range +
              (double)wall->plane_slack);
 }
-/* Adds the gaps of one facet. start: all facets nearby; v: those of this image. If the body is
-   slightly inside, beside an edge at which the surface continues, the shortest separation would
-   lead across that edge into the facet beyond. The facet is then treated as infinite. */
+/* Adds the gaps of one facet. start: all facets nearby; v: those of this image. Beside an edge at
+   which the surface continues towards the body, the shortest separation is not that of the surface,
+   and would lead across that edge if the body is slightly inside. The facet is then treated as
+   infinite, for laws with a range only if the body is inside. */
 static void demi_element_gaps(const demi_view *start, const demi_view *v, int element,
                               const demi_solid *s, double reach, demi_gaps *gaps) {
     const demi_wall *wall = v->wall;
     demi_simplex tells;
     demi_solid f;
     demi_spots spots;
+    demi_d3 n = demi_d(0, 0, 0);
     dem_vec3 y[3], own[3];
+    double gap, along;
     int i, k, owns = 0, has[3] = {0, 0, 0};
     if (!demi_facet_in_reach(wall, element, v->x, s, gaps->range) ||
-        !demi_facet_solid(wall, element, v->x, reach, &f) ||
-        !demi_solids_spots(s, &f, 1, gaps->range, demi_d(0, 0, 0), &tells, &spots)) return;
-    if (fabs(demi_d3_dot(spots.normal, f.face[0].slope)) < DEMI_FLUSH) {
+        !demi_facet_solid(wall, element, v->x, reach, &f)) return;
+    gap = demi_solids_gap(s, &f, &n, &tells);
+    if (!(gap < gaps->range)) return;
+    along = demi_d3_dot(n, f.face[0].slope);
+    if (fabs(along) >= DEMI_FLUSH && demi_facet_points(start, v, element, s, &f, along > 0, gaps))
+        return;
+    demi_solids_manifold(s, &f, 1, gaps->range, gap, n, &tells, &spots);
+    if (fabs(along) < DEMI_FLUSH) {
         const int strip = f.corners == 4;       /* two of its corners are one of the profile */
         demi_wall_corners(wall, element, y);
         for (i = 0; i < tells.count; i++) {
@@ -20752,8 +20850,12 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
             has[k] = 1;
         }
         if (owns < (strip ? 2 : 3) &&
-            !demi_facet_nearest(start, v->x, own, owns, spots.normal) &&
-            (!(spots.gap[0] < 0) || !demi_facet_under(s, &f, gaps->range, &spots))) return;
+            !demi_facet_nearest(start, v->x, own, owns, spots.normal)) {
+            if (spots.gap[0] < 0 || !demi_response_is(start->w, DEMI_PRESSING))
+                demi_facet_points(start, v, element, s, &f,
+                                  demi_d3_dot(f.face[0].slope, f.corner[0]) > 0, gaps);
+            return;
+        }
     }
     for (i = 0; i < spots.count; i++)
         demi_gaps_add(gaps, element + v->base, spots.normal, spots.x[i], spots.gap[i]);
@@ -21059,7 +21161,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
             flats.count = flats.walls = 0;
             flats.now = v.shift;
             demi_flats_add(&flats, v.element[0], &press);
-            return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
+            return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, &local, out);
         }
     for (v = *start, image = 0; demi_view_next(&v); image++) for (k = 0; k < v.count; k++) {
         const int32_t element = v.element[k];
@@ -21077,7 +21179,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
         if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
         else demi_element_gaps(start, &v, element, &s, 2*(double)part->radius + gaps.range, &gaps);
     }
-    return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
+    return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, &local, out);
 }
 /* A polyhedron and a wall of grains, each a sphere. */
 static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
@@ -21957,7 +22059,7 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
             if (wires) demi_wires_touch(sieve, set, &s, v.x, reach, pressing, &flats, &gaps);
             else demi_plate_touch(sieve, &s, demi_d3_of(v.x), reach,
                                   1e-3*(double)demi_part_thin(part), pressing, &flats, &gaps);
-            count += demi_wall_places(&v, &flats, &gaps, turn, part, out + count);
+            count += demi_wall_places(&v, &flats, &gaps, turn, &local, out + count);
         }
     }
     return count;
@@ -22184,6 +22286,550 @@ static double demi_eggs_chord(demi_egg_tile *t, int k) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>flush
+   Fixed polyhedra that touch, such as blocks side by side, act on other bodies as one body with
+   their common surface. Each is a body of its own in all lists, so a grain on a seam would touch
+   the inner faces between them and their edges, where this surface has none. A contact with one of
+   them is therefore left out where it is a contact with the inside of another:
+   - of spheres and ellipsoids, if the nearest point of one lies in another that is as near;
+   - of polyhedra, by impulses, if its point lies in another that continues beyond its face or, at an
+     edge or corner, beyond the plane across its normal.
+   Which of two that are equally near keeps the contact depends only on where they are. The one that
+   takes over from the other continues its history.
+
+   By springs the pressure of a polyhedron acts on the faces of all that have faces in common, as on
+   those of a wall.
+
+   The table has a row for each fixed polyhedron, with its pieces and links to the others that it
+   touches. It is made again if one of them is another, or elsewhere, when a list of candidates was
+   made. Slabs get that of the whole scene, because a body may touch one that is in another slab.
+   This part owns w->flush.
+   --------------------------------------------------------------------------------------------- */
+
+/* A piece of a fixed body; part.shape is not valid, shape is its index. */
+typedef struct demi_flush_piece { demi_part part; int32_t shape; } demi_flush_piece;
+/* c->from of a contact that has taken over the history of another one, c->memory. */
+enum { DEMI_TAKEN_OVER = -2 };
+/* True if body i is fixed and consists of polyhedra. */
+static int demi_flush_is(const dem_world *w, int i) {
+    const demi_shape *shape = demi_shape_of(w, i);
+    return w->bodies.inv_mass[i] <= 0 && shape && shape->kind == DEMI_POLYHEDRON;
+}
+/* Sets the box of body i: middle and half widths, m, a little wider than the body. */
+static void demi_flush_box(const dem_world *w, int i, double *middle, double *half) {
+    const double hair = 1e-3*(double)w->bodies.pos[4*i + 3];
+    int k;
+    for (k = 0; k < 3; k++) {
+        const dem_vec3 n = demi_v(k == 0, k == 1, k == 2);
+        const double hi = (double)demi_support(w, i, n);
+        const double lo = -(double)demi_support(w, i, demi_scale(n, -1));
+        middle[k] = (double)w->bodies.pos[4*i + k] + (lo + hi)/2;
+        half[k] = (hi - lo)/2 + hair;
+    }
+}
+/* The row of a fixed body; null: it touches no other one. */
+static const demi_flush_row *demi_flush_of(const dem_world *w, int b) {
+    const uint32_t slot = w->bodies.slot[b];
+    const int n = (int)slot < w->flush.slots && demi_flush_is(w, b) ? w->flush.of[slot] : -1;
+    return n < 0 || w->flush.rows[n].from == w->flush.rows[n].to ? 0 : &w->flush.rows[n];
+}
+/* True if a body has a face in common with another one. */
+static int demi_flush_faced(const dem_world *w, const demi_flush_row *b) {
+    int k;
+    for (k = b->from; k < b->to; k++) if (w->flush.links[k].faced) return 1;
+    return 0;
+}
+/* The distance, m, below which two bodies count as touching. */
+static double demi_flush_tiny(const demi_flush_row *b, const demi_flush_row *o) {
+    return 1e-6*(double)(b->radius + o->radius) +
+        (DEMI_SINGLE ? 5e-7 : 1e-15)*(double)demi_length(b->at);
+}
+/* Sets q to piece j of a body whose centre is at `at`. Returns 0 if it is no polyhedron. */
+static int demi_flush_piece_of(const dem_world *w, const demi_flush_row *b, int j, dem_vec3 at,
+                               demi_part *q) {
+    *q = w->flush.pieces[b->first + j].part;
+    q->centre = demi_add(q->centre, at);
+    q->shape = &w->shapes[w->flush.pieces[b->first + j].shape];
+    return q->kind == DEMI_POLYHEDRON;
+}
+/* True if face f of s and face g of t are in one plane, with opposite normals. */
+static int demi_faces_opposite(const demi_solid *s, int f, const demi_solid *t, int g,
+                               double tiny) {
+    const demi_d3 n = demi_d3_scale(s->face[f].slope, s->face[f].high);
+    const demi_d3 m = demi_d3_scale(t->face[g].slope, t->face[g].high);
+    if (!(demi_d3_length(demi_d3_add(n, m)) < (DEMI_SINGLE ? 1e-5 : 1e-6))) return 0;
+    return fabs(s->face[f].high + t->face[g].high +
+                demi_d3_dot(n, demi_d3_sub(s->centre, t->centre))) < tiny;
+}
+/* Writes the sides of face f of s as half spaces and returns their number. */
+static int demi_face_sides(const demi_solid *s, int f, demi_half *sides) {
+    int i, count = 0;
+    for (i = s->rim[f]; i < s->rim[f + 1]; i++, count++) {
+        sides[count].o = demi_solid_corner(s, f, i);
+        sides[count].n = demi_d3_cross(s->face[f].slope, demi_d3_sub(
+            demi_solid_corner(s, f, i + 1), sides[count].o));
+    }
+    return count;
+}
+/* True if the two have a part of a face in common. */
+static int demi_solids_faced(const demi_solid *s, const demi_solid *t, double tiny) {
+    demi_half sides[DEM_POLYHEDRON_FACES];
+    demi_d3 x[DEMI_SECTION], area;
+    int f, g, i, k, count, all;
+    for (f = 0; f < s->faces; f++)
+        for (g = 0; g < t->faces; g++) {
+            if (!demi_faces_opposite(s, f, t, g, tiny)) continue;
+            for (i = s->rim[f], count = 0; i < s->rim[f + 1]; i++)
+                x[count++] = demi_solid_corner(s, f, i);
+            all = demi_face_sides(t, g, sides);
+            for (k = 0; k < all && count > 2; k++)
+                count = demi_polygon_clip(x, count, sides[k].n, sides[k].o);
+            for (i = 2, area = demi_d(0, 0, 0); i < count; i++)
+                area = demi_d3_add(area, demi_d3_normal(x[0], x[i - 1], x[i]));
+            if (demi_d3_length(area) > tiny*demi_solid_radius(s)) return 1;
+        }
+    return 0;
+}
+/* Returns how two bodies touch: 1 in a part of a face, 0 in edges or corners or by an overlap, -1
+   not at all. way: m, from b to o. */
+static int demi_flush_how(const dem_world *w, const demi_flush_row *b, const demi_flush_row *o,
+                          dem_vec3 way) {
+    const double tiny = demi_flush_tiny(b, o);
+    int k, j, how = -1;
+    for (k = 0; k < b->count; k++)
+        for (j = 0; j < o->count && how < 1; j++) {
+            demi_d3 n = demi_d(0, 0, 0);
+            demi_simplex simplex;
+            demi_solid s, t;
+            demi_part p, q;
+            if (!demi_flush_piece_of(w, b, k, demi_v(0, 0, 0), &p) ||
+                !demi_flush_piece_of(w, o, j, way, &q)) continue;
+            demi_solid_of(&p, p.centre, &s);
+            demi_solid_of(&q, q.centre, &t);
+            if (demi_solids_apart(&s, &t, tiny, &n, &simplex) &&
+                demi_solids_slab(&s, &t, n) > tiny) continue;
+            how = demi_solids_faced(&s, &t, tiny);
+        }
+    return how;
+}
+/* Adds to row n its links to those whose boxes it touches. Returns 0 if memory ran out. */
+static int demi_flush_link_up(dem_world *w, const demi_tree *tree, int n) {
+    const demi_periods p = demi_periods_of(w);
+    const double *half = tree->half + 3*n, most = DEMI_MAX(half[0], DEMI_MAX(half[1], half[2]));
+    demi_flush *f = &w->flush;
+    demi_flush_row *b = &f->rows[n];
+    int code, k;
+    b->from = f->link_count;
+    for (code = 0; code < 27; code++) {
+        const int c[3] = {code%3 - 1, code/3%3 - 1, code/9 - 1};
+        demi_search_line line;
+        double x[3];
+        int32_t other;
+        for (k = 0; k < 3 && !(c[k] && !(p.period[k] > 0)); k++)
+            x[k] = tree->x[3*n + k] + c[k]*(double)p.period[k];
+        if (k < 3) continue;
+        x[0] += c[1]*(double)p.offset;
+        demi_tree_line(&line, tree, x, x, most);
+        while ((other = demi_tree_next(&line)) >= 0) {
+            demi_flush_link link;
+            for (k = 0; k < 3; k++)
+                if (fabs(tree->x[3*other + k] - x[k]) > tree->half[3*other + k] + half[k]) break;
+            if (k < 3 || other == n) continue;
+            link.to = other;
+            link.way = demi_nearest(&p, demi_sub(f->rows[other].at, b->at));
+            link.faced = demi_flush_how(w, b, &f->rows[other], link.way);
+            if (link.faced < 0) continue;
+            if (!DEMI_GROW(w, f->links, (size_t)f->link_count + 1)) return 0;
+            f->links[f->link_count++] = link;
+        }
+    }
+    b->to = f->link_count;
+    return 1;
+}
+/* Adds a row for fixed body i, without links. Returns 0 if memory ran out. */
+static int demi_flush_add(dem_world *w, int i) {
+    demi_flush *f = &w->flush;
+    demi_flush_row *b = &f->rows[f->count];
+    int k;
+    b->slot = (int32_t)w->bodies.slot[i];
+    b->material = w->bodies.material[i];
+    b->first = f->piece_count;
+    b->count = demi_parts_count(w, i);
+    b->at = demi_at(w->bodies.pos + 4*i);
+    b->radius = w->bodies.pos[4*i + 3];
+    if (!DEMI_GROW(w, f->pieces, (size_t)(f->piece_count + b->count))) return 0;
+    for (k = 0; k < b->count; k++) {
+        demi_flush_piece *piece = &f->pieces[f->piece_count++];
+        piece->part = demi_part_of(w, i, k);
+        piece->shape = (int32_t)(piece->part.shape - w->shapes);
+    }
+    f->of[b->slot] = f->count++;
+    return 1;
+}
+/* A digest of all bodies that the table is about; *count receives their number. */
+static uint64_t demi_flush_digest(const dem_world *w, int *count) {
+    uint64_t digest = UINT64_C(14695981039346656037);
+    int slot, k;
+    for (slot = *count = 0; slot < w->bodies.slot_count && w->bodies.shaped; slot++) {
+        const int i = w->bodies.slot_index[slot];
+        const unsigned char *at;
+        double x[11];
+        if (i < 0 || !demi_flush_is(w, i)) continue;
+        for (k = 0; k < 4; k++) x[k] = (double)w->bodies.pos[4*i + k];
+        for (k = 0; k < 4; k++) x[4 + k] = (double)w->bodies.orient[4*i + k];
+        x[8] = slot;
+        x[9] = w->bodies.shape[i];
+        x[10] = w->bodies.material[i];
+        for (at = (const unsigned char *)x, k = 0; k < (int)sizeof x; k++)
+            digest = (digest ^ at[k])*UINT64_C(1099511628211);
+        ++*count;
+    }
+    return digest;
+}
+/* Makes the table, unless it fits. Returns 0 if memory ran out. */
+static int demi_flush_make(dem_world *w) {
+    demi_flush *f = &w->flush;
+    double *box = 0;
+    demi_tree tree;
+    int slot, k, n = 0, ok;
+    const uint64_t digest = w->bodies.ghost ? f->digest : demi_flush_digest(w, &n);
+    f->valid = 1;
+    if (digest == f->digest) return 1;
+    memset(&tree, 0, sizeof tree);
+    f->count = f->piece_count = f->link_count = f->slots = 0;
+    f->digest = digest;
+    if (n < 2) return 1;
+    ok = demi_grow(w, DEMI_LOOSE, &box, sizeof *box, 6*(size_t)n) &&
+        DEMI_GROW(w, f->rows, (size_t)n) && DEMI_GROW(w, f->of, (size_t)w->bodies.slot_count);
+    for (slot = 0; slot < w->bodies.slot_count && ok; slot++) {
+        const int i = w->bodies.slot_index[slot];
+        f->of[slot] = -1;
+        if (i < 0 || !demi_flush_is(w, i)) continue;
+        demi_flush_box(w, i, box + 3*f->count, box + 3*(n + f->count));
+        ok = demi_flush_add(w, i);
+    }
+    tree.half = box + 3*n;
+    ok = ok && demi_tree_make(w, &tree, box, n);
+    for (k = 0; k < n && ok; k++) ok = demi_flush_link_up(w, &tree, k);
+    if (ok) f->slots = w->bodies.slot_count;
+    else f->digest = 0;
+    if (!ok || !f->link_count) f->count = 0;
+    demi_free(w, box);
+    demi_tree_free(w, &tree);
+    return f->valid = ok;
+}
+/* Gives a slab the table of the whole scene. Returns 0 if memory ran out. */
+static int demi_flush_share(dem_world *to, const dem_world *from) {
+    demi_flush *f = &to->flush;
+    const demi_flush *own = &from->flush;
+    if (!DEMI_COPY(to, f->rows, own->rows, own->count) ||
+        !DEMI_COPY(to, f->pieces, own->pieces, own->piece_count) ||
+        !DEMI_COPY(to, f->links, own->links, own->link_count) ||
+        !DEMI_COPY(to, f->of, own->of, own->slots)) return 0;
+    f->count = own->count;
+    f->piece_count = own->piece_count;
+    f->link_count = own->link_count;
+    f->slots = own->slots;
+    return 1;
+}
+
+/* --- what another body covers. a, p: a body and its part, about whose centre positions are; b, j:
+   the row of a fixed body and its piece; way: m, to its centre --- */
+
+/* From the centre of p to that of a fixed body, m. */
+static dem_vec3 demi_flush_way(const dem_world *w, int a, const demi_part *p, int b) {
+    const demi_periods periods = demi_periods_of(w);
+    return demi_sub(demi_nearest(&periods, demi_sub(demi_at(w->bodies.pos + 4*b),
+                                                    demi_at(w->bodies.pos + 4*a))), p->centre);
+}
+/* Sets s to a piece of a fixed body as p sees it: scaled, if p is an ellipsoid, so that this is the
+   unit sphere. Returns 0 if it is no polyhedron or farther from p than `reach`, m. */
+static int demi_flush_solid(const dem_world *w, const demi_part *p, const demi_flush_row *b, int j,
+                            dem_vec3 way, dem_real reach, demi_solid *s) {
+    demi_part q;
+    if (!demi_flush_piece_of(w, b, j, way, &q) ||
+        !(demi_length(q.centre) < reach + q.radius)) return 0;
+    if (p->kind == DEMI_ELLIPSOID) demi_solid_measure(&q, p, q.centre, s);
+    else demi_solid_of(&q, q.centre, s);
+    if (w->desc.planar && demi_response_is(w, DEMI_PRESSING)) demi_solid_stretch(s);
+    return 1;
+}
+/* True if x is in s or at most tiny, m, beyond one of its faces. */
+static int demi_solid_about(const demi_solid *s, demi_d3 x, double tiny) {
+    int f;
+    for (f = 0; f < s->faces; f++)
+        if (!(demi_solid_in(s, f, x)*s->face[f].high > -tiny)) return 0;
+    return 1;
+}
+/* True if the body at the end of a link comes before that at its begin. */
+static int demi_flush_before(const demi_flush_link *l) {
+    if (l->way.x > 0 || l->way.x < 0) return l->way.x < 0;
+    if (l->way.y > 0 || l->way.y < 0) return l->way.y < 0;
+    return l->way.z < 0;
+}
+static int demi_flush_ignores(const dem_world *w, int a, const demi_flush_row *o) {
+    return w->effects.ignoring &&
+        demi_ignores(w, w->bodies.material[a] - 1, o->material - 1);
+}
+/* How far from p pieces may matter, m. */
+static dem_real demi_flush_reach(const dem_world *w, const demi_part *p, const demi_flush_row *b) {
+    return 2*p->radius + 2*demi_range(w, p->radius + b->radius);
+}
+/* True if another fixed body covers the point of b nearest to p, a sphere or an ellipsoid. */
+static int demi_flush_covers(const dem_world *w, int a, const demi_part *p,
+                             const demi_flush_row *b, int j, dem_vec3 way) {
+    const dem_real reach = demi_flush_reach(w, p, b);
+    demi_solid s, t;
+    demi_d3 x, y;
+    double off, even;
+    int k, i;
+    if (!demi_flush_solid(w, p, b, j, way, reach, &s)) return 0;
+    off = demi_solid_near(&s, demi_d(0, 0, 0), &x);
+    even = (DEMI_SINGLE ? 1e-6 : 1e-13)*(fabs(off) + demi_d3_length(s.centre));
+    for (k = b->from; k < b->to; k++) {
+        const demi_flush_link *l = &w->flush.links[k];
+        const demi_flush_row *o = &w->flush.rows[l->to];
+        for (i = 0; i < o->count && !demi_flush_ignores(w, a, o); i++) {
+            double its;
+            if (!demi_flush_solid(w, p, o, i, demi_add(way, l->way), reach, &t) ||
+                !demi_solid_about(&t, x, demi_flush_tiny(b, o))) continue;
+            its = demi_solid_near(&t, demi_d(0, 0, 0), &y);
+            if (its < off - even || (its <= off + even && demi_flush_before(l))) return 1;
+        }
+    }
+    return 0;
+}
+/* True if another fixed body continues where polyhedron p touches b at x, with the normal n from p
+   to b (unit). */
+static int demi_flush_continues(const dem_world *w, int a, const demi_part *p,
+                                const demi_flush_row *b, int j, dem_vec3 way, demi_d3 x,
+                                demi_d3 n) {
+    const dem_real reach = demi_flush_reach(w, p, b);
+    const demi_d3 out = demi_d3_scale(n, -1);
+    demi_solid s, t;
+    double along;
+    int k, i, c, f;
+    if (!demi_flush_solid(w, p, b, j, way, reach, &s)) return 0;
+    f = demi_solid_facing(&s, out, &along);
+    if (along >= DEMI_FLUSH) {                  /* a little into the face */
+        const double part = 1.0/(s.rim[f + 1] - s.rim[f]);
+        demi_d3 middle = demi_d(0, 0, 0);
+        for (i = s.rim[f]; i < s.rim[f + 1]; i++)
+            middle = demi_d3_plus(middle, part, demi_solid_corner(&s, f, i));
+        x = demi_d3_between(x, middle, 1e-3);
+    }
+    for (k = b->from; k < b->to; k++) {
+        const demi_flush_link *l = &w->flush.links[k];
+        const demi_flush_row *o = &w->flush.rows[l->to];
+        for (i = 0; i < o->count && !demi_flush_ignores(w, a, o); i++) {
+            if (!demi_flush_solid(w, p, o, i, demi_add(way, l->way), reach, &t) ||
+                !demi_solid_about(&t, x, demi_flush_tiny(b, o))) continue;
+            if (along >= DEMI_FLUSH) return 1;
+            for (c = 0; c < t.corners; c++) {
+                const demi_d3 to = demi_d3_sub(t.corner[c], x);
+                if (demi_d3_dot(to, out) > 1e-4*demi_d3_length(to)) return 1;
+            }
+        }
+    }
+    return 0;
+}
+/* The bodies of a contact, one of which is fixed: that one's row, null if it touches no other one;
+   the free one, its part, and the way to the fixed one's centre. */
+typedef struct demi_flush_pair {
+    const demi_flush_row *row;
+    const demi_part *part;
+    dem_vec3 way;
+    int first, a, of, piece;       /* first: the fixed one is a of the contact; a, of: the free one
+                                      and its part's number */
+} demi_flush_pair;
+static demi_flush_pair demi_flush_pair_of(const dem_world *w, const demi_kept *c,
+                                          const demi_part *p, const demi_part *q) {
+    demi_flush_pair o;
+    int b;
+    memset(&o, 0, sizeof o);
+    o.first = w->bodies.inv_mass[c->a] <= 0;
+    b = o.first ? c->a : c->b;
+    if ((o.first ? p : q)->kind == DEMI_POLYHEDRON) o.row = demi_flush_of(w, b);
+    if (!o.row) return o;
+    o.a = o.first ? c->b : c->a;
+    o.of = o.first ? c->part_b : c->part_a;
+    o.piece = o.first ? c->part_a : c->part_b;
+    o.part = o.first ? q : p;
+    o.way = demi_flush_way(w, o.a, o.part, b);
+    return o;
+}
+/* Removes points of a contact of polyhedra where the fixed body has an inner face. gap: m, from the
+   centre of the first one to that of the other. Returns the number of the others. */
+static int demi_flush_spots(const dem_world *w, const demi_flush_pair *o, dem_vec3 gap,
+                            demi_spots *spots) {
+    const demi_d3 off = o->first ? demi_d3_of(gap) : demi_d(0, 0, 0);
+    const demi_d3 n = demi_d3_scale(spots->normal, o->first ? -1 : 1);
+    int k, left = 0;
+    for (k = 0; k < spots->count; k++) {
+        const demi_d3 x = demi_d3_plus(demi_d3_sub(spots->x[k], off), spots->gap[k]/2, n);
+        if (demi_flush_continues(w, o->a, o->part, o->row, o->piece, o->way, x, n)) continue;
+        spots->x[left] = spots->x[k];
+        spots->gap[left++] = spots->gap[k];
+    }
+    return spots->count = left;
+}
+
+/* --- pressure of polyhedra on the common surface, by springs (>>polyhedra): as on a rigid wall of
+   the faces of all bodies, without what two of them have in common --- */
+
+enum { DEMI_FLUSH_NEAR = 128 };    /* largest number of fixed bodies that a polyhedron presses on */
+typedef struct demi_flush_press {
+    demi_pressure own;             /* on the part in question */
+    double shared, force;          /* m3, m2: I; sum of the forces on all parts */
+} demi_flush_press;
+/* Adds to out the pressure of s on face f of t; with `other`, minus that on what the face has in
+   common with face g of other. */
+static void demi_flush_face(const demi_solid *s, const demi_solid *t, int f,
+                            const demi_solid *other, int g, demi_pressure *out) {
+    demi_half sides[2*DEM_POLYHEDRON_FACES];
+    const demi_d3 up = demi_d3_scale(t->face[f].slope, t->face[f].high);
+    int count = demi_face_sides(t, f, sides);
+    demi_pressure press;
+    if (other) count += demi_face_sides(other, g, sides + count);
+    memset(&press, 0, sizeof press);
+    demi_solid_on_flat(s, demi_d3_scale(up, -1), -demi_d3_dot(up, t->centre) - t->face[f].high,
+                       sides, count, 0, &press);
+    if (other) demi_pressure_scale(&press, -1);
+    demi_pressure_add(out, &press);
+}
+/* Sets *out to the pressure of p (s: about its centre) on piece i of fixed body o: on its faces
+   without what others cover. */
+static void demi_flush_part(const dem_world *w, int a, const demi_part *p, const demi_solid *s,
+                            const demi_flush_row *o, int i, dem_vec3 way, demi_pressure *out) {
+    demi_solid t, other;
+    int f, g, k, j;
+    memset(out, 0, sizeof *out);
+    if (!demi_flush_solid(w, p, o, i, way, p->radius, &t)) return;
+    for (f = 0; f < t.faces; f++) demi_flush_face(s, &t, f, 0, 0, out);
+    if (demi_solid_holds(&t, s->centre))
+        demi_pressure_beyond(s, demi_d3_unit(t.centre), out);
+    for (k = o->from; k < o->to && out->sum > 0; k++) {
+        const demi_flush_link *l = &w->flush.links[k];
+        const demi_flush_row *b = &w->flush.rows[l->to];
+        if (!l->faced || demi_flush_ignores(w, a, b)) continue;
+        for (j = 0; j < b->count; j++) {
+            if (!demi_flush_solid(w, p, b, j, demi_add(way, l->way), p->radius, &other)) continue;
+            for (f = 0; f < t.faces; f++)
+                for (g = 0; g < other.faces; g++)
+                    if (demi_faces_opposite(&t, f, &other, g, demi_flush_tiny(o, b)))
+                        demi_flush_face(s, &t, f, &other, g, out);
+        }
+    }
+}
+/* Sets *out to the pressure of polyhedron p on piece j of fixed body b, and on all that belong to
+   the same surface near p. Returns 0 if there is none on b. */
+static int demi_flush_pressed(const dem_world *w, const demi_flush_pair *c,
+                              demi_flush_press *out) {
+    const demi_part *p = c->part;
+    int32_t found[DEMI_FLUSH_NEAR];
+    dem_vec3 way[DEMI_FLUSH_NEAR];
+    demi_pressure press;
+    demi_solid s;
+    int n, i, k, m, count = 1;
+    demi_solid_of(p, demi_v(0, 0, 0), &s);
+    demi_flush_part(w, c->a, p, &s, c->row, c->piece, c->way, &out->own);
+    out->shared = out->force = 0;
+    if (!(out->own.sum > 0)) return 0;
+    found[0] = (int32_t)(c->row - w->flush.rows);
+    way[0] = c->way;
+    for (n = 0; n < count; n++) {
+        const demi_flush_row *o = &w->flush.rows[found[n]];
+        for (i = 0; i < o->count; i++) {
+            if (!n && i == c->piece) press = out->own;
+            else demi_flush_part(w, c->a, p, &s, o, i, way[n], &press);
+            out->shared += press.shared;
+            out->force += demi_d3_length(press.force);
+        }
+        for (k = o->from; k < o->to; k++) {
+            const demi_flush_link *l = &w->flush.links[k];
+            const demi_flush_row *next = &w->flush.rows[l->to];
+            const dem_vec3 to = demi_add(way[n], l->way);
+            for (m = 0; m < count && found[m] != l->to; m++) continue;
+            if (m < count || m == DEMI_FLUSH_NEAR || !l->faced ||
+                demi_flush_ignores(w, c->a, next) ||
+                !(demi_length(to) < p->radius + next->radius)) continue;
+            found[count] = l->to;
+            way[count++] = to;
+        }
+    }
+    return out->shared > 0 && demi_d3_length(out->own.force) > 1e-9*out->force;
+}
+
+/* --- the history of a contact that takes over from another one --- */
+
+/* Returns the first old contact of body a with a body, of its work group; null if it has none. */
+static const demi_kept *demi_flush_old(const dem_world *w, int a, const demi_kept **end) {
+    const int d = demi_domain_of(w, a);
+    const demi_kept *old = demi_kept_of(w, d);
+    int lo = 0, hi = w->domains[d].kept;
+    *end = old + hi;
+    while (lo < hi) {
+        const int mid = lo + (hi - lo)/2;
+        if (old[mid].a < a) lo = mid + 1;
+        else hi = mid;
+    }
+    return old + lo;
+}
+/* Lets a new contact c of two bodies (o) continue an old one of the free body with another fixed
+   body, at nearly the same normal: of spheres and ellipsoids one that is covered now. */
+static void demi_flush_take_over(const dem_world *w, const demi_flush_pair *o, demi_kept *c) {
+    const demi_kept *best = 0, *old, *end;
+    dem_real most = DEM_R(0.95), turn = 1;
+    int k, e;
+    for (k = o->row->from; k < o->row->to; k++) {
+        const demi_flush_link *l = &w->flush.links[k];
+        const demi_flush_row *row = &w->flush.rows[l->to];
+        const int other = w->bodies.slot_index[row->slot];
+        if (other < 0) continue;                /* in another slab */
+        old = demi_flush_old(w, DEMI_MIN(o->a, other), &end);
+        for (; old < end && old->a == DEMI_MIN(o->a, other); old++) {
+            const int swapped = (old->a == o->a) == o->first;
+            const dem_real side = swapped ? DEM_R(-1) : DEM_R(1);
+            const dem_real along = side*demi_dot(old->normal, c->normal);
+            if (old->b != DEMI_MAX(o->a, other) || !(along > most) ||
+                (old->a == o->a ? old->part_a : old->part_b) != o->of ||
+                (c->corners ? old->corner != (swapped ? c->corner ^ 1 : c->corner)
+                 : !demi_flush_covers(w, o->a, o->part, row,
+                                      old->a == o->a ? old->part_b : old->part_a,
+                                      demi_add(o->way, l->way)))) continue;
+            most = along;
+            best = old;
+            turn = side;
+        }
+    }
+    if (!best) return;
+    for (e = 0; e < w->memory_stride; e++)
+        c->memory[e] = w->vector_mask >> e & 1 ? turn*best->memory[e] : best->memory[e];
+    c->from = DEMI_TAKEN_OVER;
+}
+/* The same for all points of a contact c of parts p and q. */
+static void demi_flush_follow(const dem_world *w, demi_kept *c, const demi_part *p,
+                              const demi_part *q) {
+    const int points = DEMI_MAX(c->corners, 1);
+    demi_flush_pair o;
+    int i;
+    if (c->from >= 0) return;
+    o = demi_flush_pair_of(w, c, p, q);
+    for (i = 0; i < points && o.row; i++)
+        if (c[i].from < 0) demi_flush_take_over(w, &o, &c[i]);
+}
+/* True if contact c of parts p and q, which have just been found to touch, is none of the common
+   surface of fixed bodies. gap: from p's centre to q's, m; spots: its points, if it has several. */
+static int demi_flush_within(const dem_world *w, const demi_kept *c, const demi_part *p,
+                             const demi_part *q, dem_vec3 gap, demi_spots *spots) {
+    const demi_flush_pair o = demi_flush_pair_of(w, c, p, q);
+    if (!o.row) return 0;
+    if (spots->count) return !demi_flush_spots(w, &o, gap, spots);
+    return o.part->kind != DEMI_POLYHEDRON &&
+        demi_flush_covers(w, o.a, o.part, o.row, o.piece, o.way);
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>meets
    Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
    Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85], two
@@ -22366,6 +23012,36 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     spots->count = 4;
     return least > -DEMI_TOUCHING*(ra + rb);
 }
+/* A polyhedron and a fixed one that has faces in common with others: by its pressure on their common
+   surface. c becomes the first of four contact points, which have this body's part of the force. */
+static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const demi_part *p,
+                           const demi_part *q, dem_vec3 gap, demi_kept *c, demi_spots *spots) {
+    const double r = demi_part_equal(o->part);
+    demi_flush_press press;
+    demi_kept_more *more;
+    demi_patch at;
+    double overlap;
+    if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)) ||
+        !demi_flush_pressed(w, o, &press) ||
+        !demi_pressure_patch(&press.own, &o->part->q, 0, &at))
+        return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
+    overlap = demi_shared_overlap(press.shared, r);
+    c->normal = o->first ? demi_scale(at.normal, -1) : at.normal;
+    c->overlap = (dem_real)overlap;
+    c->slope = (dem_real)demi_shared_slope(press.force, r, overlap);
+    c->deep = (dem_real)press.own.deep;
+    c->share = (dem_real)(at.force/press.force);
+    c->r_eff = (dem_real)r;
+    c->corners = 4;
+    more = demi_kept_odd(c);
+    more->part = c->share;
+    more->couple = at.couple;
+    more->spread = at.spread[0];
+    more->aside = demi_scale(at.spread[1], o->first ? DEM_R(-1) : DEM_R(1));
+    c->arm_a = demi_add(p->centre, o->first ? demi_add(gap, at.point) : at.point);
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    return 1;
+}
 /* Two polyhedra by their common volume. c becomes the first of four contact points. */
 static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                 dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
@@ -22376,6 +23052,11 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_pressure s;
     double overlap;
     (void)lambda;
+    if (w->flush.count && demi_response_is(w, DEMI_PRESSING)) {
+        const demi_flush_pair o = demi_flush_pair_of(w, c, p, q);
+        if (o.row && demi_flush_faced(w, o.row))
+            return demi_flush_meet(w, &o, p, q, gap, c, spots);
+    }
     if (!demi_response_is(w, DEMI_PRESSING) || demi_face_keeps(p, q, gap) ||
         demi_face_keeps(q, p, demi_scale(gap, -1)))
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
@@ -22867,8 +23548,11 @@ static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const de
     if (!demi_meet_of(p->kind, q->kind)(w, p, q, gap, c->from < 0 ? 0 : now[c->from].lambda, c,
                                         &spots))
         w->domains[d].kept_next--;
+    else if (w->flush.count && demi_flush_within(w, c, p, q, gap, &spots))
+        w->domains[d].kept_next--;
     else if (spots.count ? !demi_kept_points(w, d, c, p, q, &spots, old, olds)
              : c->corners && !demi_kept_spread(w, d, c, old, olds)) return 0;
+    else if (w->flush.count && !spots.count) demi_flush_follow(w, c, p, q);
     return 1;
 }
 /* Appends the contact of two spheres of neighbouring bodies if they touch; most do not. one, other:
@@ -23345,7 +24029,8 @@ static int demi_touch(dem_world *w) {
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
     if (!w->wall_count && !w->bodies.shaped && !w->effects.clustered) return 1;
     if ((!w->facets_valid && !demi_surfaces_make(w)) ||
-        (!w->touching_valid && !demi_touching_reserve(w))) return 0;
+        (!w->touching_valid && !demi_touching_reserve(w)) ||
+        (!w->flush.valid && !demi_flush_make(w))) return 0;
     demi_surfaces_follow(w);
     do {
         demi_domains_do(w, demi_domain_kept_touch);
@@ -23395,6 +24080,7 @@ static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
 /* Copies the history from the contact that c continues. */
 DEM_INLINE void demi_kept_recall(const dem_world *w, const demi_kept *now, demi_kept *c) {
     int e;
+    if (c->from == DEMI_TAKEN_OVER) return;
     for (e = 0; e < w->memory_stride; e++) {
         DEMI_ONE_BY_ONE(e);                     /* no call of memcpy for so few */
         c->memory[e] = c->from < 0 ? 0 : now[c->from].memory[e];
@@ -43005,7 +43691,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         (from->bodies.orienting && !demi_orient_begin(w)) ||
         !demi_slab_shapes(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
-        !demi_slab_outlets_copy(w, from)) return w;
+        !demi_slab_outlets_copy(w, from) || !demi_flush_share(w, from)) return w;
     s->head.shapes = w->shapes;                 /* for the grains of feeds */
     s->head.shape_count = w->shape_count;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
@@ -43196,7 +43882,7 @@ static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
         return 0;
     /* files the contact histories; the world keeps its list */
-    if (w->stage.list_valid && !demi_carry_collect(w)) {
+    if (!demi_flush_make(w) || (w->stage.list_valid && !demi_carry_collect(w))) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
     }

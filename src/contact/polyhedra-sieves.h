@@ -358,7 +358,7 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
             if (wires) demi_wires_touch(sieve, set, &s, v.x, reach, pressing, &flats, &gaps);
             else demi_plate_touch(sieve, &s, demi_d3_of(v.x), reach,
                                   1e-3*(double)demi_part_thin(part), pressing, &flats, &gaps);
-            count += demi_wall_places(&v, &flats, &gaps, turn, part, out + count);
+            count += demi_wall_places(&v, &flats, &gaps, turn, &local, out + count);
         }
     }
     return count;

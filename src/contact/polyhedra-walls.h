@@ -150,11 +150,11 @@ static void demi_flats_divide(const demi_flats_wall *part, const demi_patch *p, 
         t[k].turn = demi_rotate(R, demi_d3_real(turn));
     }
 }
-/* Writes the contact points of all groups, found in a frame of axes R. Returns their number. */
+/* Writes the contact points of all groups, found in a frame of axes R, in which the part is given.
+   Returns their number. */
 static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_real *R,
                              const demi_part *part, demi_touching *out) {
     const double r = demi_part_equal(part);
-    const demi_part local = demi_part_local(R, part);
     double shared = 0, force = 0, overlap;
     demi_patch p;
     int i, k, e, count = 0;
@@ -167,7 +167,7 @@ static int demi_flats_places(const demi_view *v, const demi_flats *f, const dem_
         const demi_flats_wall *own = f->part, *first = 0;
         double weight = 0;
         int rank = 0;
-        if (!demi_pressure_patch(&f->press[i], &local.q, 0, &p)) continue;
+        if (!demi_pressure_patch(&f->press[i], &part->q, 0, &p)) continue;
         for (k = 0; k < 4; k++) {
             demi_touching *t = &out[count++];
             t->element = f->element[i];
@@ -778,7 +778,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
             flats.count = flats.walls = 0;
             flats.now = v.shift;
             demi_flats_add(&flats, v.element[0], &press);
-            return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
+            return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, &local, out);
         }
     for (v = *start, image = 0; demi_view_next(&v); image++) for (k = 0; k < v.count; k++) {
         const int32_t element = v.element[k];
@@ -796,7 +796,7 @@ static int demi_flat_polyhedron(const demi_view *start, const demi_part *part, d
         if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)v.x.z, &gaps);
         else demi_element_gaps(start, &v, element, &s, 2*(double)part->radius + gaps.range, &gaps);
     }
-    return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, part, out);
+    return demi_wall_places(start, &flats, &gaps, wall->pose.rotation, &local, out);
 }
 /* A polyhedron and a wall of grains, each a sphere. */
 static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
