@@ -70,6 +70,7 @@
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
        >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
+       >>flush             fixed polyhedra that touch: one surface
        >>meets             contact geometry of two bodies, and of a body on a wall, by shape
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies

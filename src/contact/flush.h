@@ -5,8 +5,8 @@
    the inner faces between them and their edges, where this surface has none. A contact with one of
    them is therefore left out where it is a contact with the inside of another:
    - of spheres and ellipsoids, if the nearest point of one lies in another that is as near;
-   - of polyhedra, by impulses, if its point lies in another that continues beyond its face or, at an
-     edge or corner, beyond the plane across its normal.
+   - of polyhedra, by impulses, if its point lies in another that continues beyond its face or, at
+     an edge or corner, beyond the plane across its normal.
    Which of two that are equally near keeps the contact depends only on where they are. The one that
    takes over from the other continues its history.
 

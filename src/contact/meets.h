@@ -181,8 +181,9 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     spots->count = 4;
     return least > -DEMI_TOUCHING*(ra + rb);
 }
-/* A polyhedron and a fixed one that has faces in common with others: by its pressure on their common
-   surface. c becomes the first of four contact points, which have this body's part of the force. */
+/* A polyhedron and a fixed one that has faces in common with others (o): by its pressure on their
+   common surface. c becomes the first of four contact points, which have this body's part of the
+   force. */
 static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const demi_part *p,
                            const demi_part *q, dem_vec3 gap, demi_kept *c, demi_spots *spots) {
     const double r = demi_part_equal(o->part);

@@ -228,12 +228,13 @@ typedef struct demi_coefs_row {
     dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
 } demi_coefs_row;
 
-/* Fixed polyhedra that touch (>>flush): a body, with its pieces and links; from one body to another that
-   it touches. */
+/* Fixed polyhedra that touch (>>flush): a body, with its pieces and links; from one body to another
+   that it touches. */
 typedef struct demi_flush_row {
     dem_vec3 at;                   /* m */
     dem_real radius;               /* m, of the bounding sphere */
-    int32_t slot, material, first, count, from, to;    /* first piece, number; links from .. to - 1 */
+    int32_t slot, material;
+    int32_t first, count, from, to;        /* first piece, pieces; links from .. to - 1 */
 } demi_flush_row;
 typedef struct demi_flush_link {
     dem_vec3 way;                  /* m, between their centres */
