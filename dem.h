@@ -70,6 +70,7 @@
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
        >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
+       >>flush             fixed polyhedra that touch: one surface
        >>meets             contact geometry of two bodies, and of a body on a wall, by shape
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
@@ -4535,12 +4536,13 @@ typedef struct demi_coefs_row {
     dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
 } demi_coefs_row;
 
-/* Fixed polyhedra that touch (>>flush): a body, with its pieces and links; from one body to another that
-   it touches. */
+/* Fixed polyhedra that touch (>>flush): a body, with its pieces and links; from one body to another
+   that it touches. */
 typedef struct demi_flush_row {
     dem_vec3 at;                   /* m */
     dem_real radius;               /* m, of the bounding sphere */
-    int32_t slot, material, first, count, from, to;    /* first piece, number; links from .. to - 1 */
+    int32_t slot, material;
+    int32_t first, count, from, to;        /* first piece, pieces; links from .. to - 1 */
 } demi_flush_row;
 typedef struct demi_flush_link {
     dem_vec3 way;                  /* m, between their centres */
@@ -22292,8 +22294,8 @@ static double demi_eggs_chord(demi_egg_tile *t, int k) {
    the inner faces between them and their edges, where this surface has none. A contact with one of
    them is therefore left out where it is a contact with the inside of another:
    - of spheres and ellipsoids, if the nearest point of one lies in another that is as near;
-   - of polyhedra, by impulses, if its point lies in another that continues beyond its face or, at an
-     edge or corner, beyond the plane across its normal.
+   - of polyhedra, by impulses, if its point lies in another that continues beyond its face or, at
+     an edge or corner, beyond the plane across its normal.
    Which of two that are equally near keeps the contact depends only on where they are. The one that
    takes over from the other continues its history.
 
@@ -23012,8 +23014,9 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     spots->count = 4;
     return least > -DEMI_TOUCHING*(ra + rb);
 }
-/* A polyhedron and a fixed one that has faces in common with others: by its pressure on their common
-   surface. c becomes the first of four contact points, which have this body's part of the force. */
+/* A polyhedron and a fixed one that has faces in common with others (o): by its pressure on their
+   common surface. c becomes the first of four contact points, which have this body's part of the
+   force. */
 static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const demi_part *p,
                            const demi_part *q, dem_vec3 gap, demi_kept *c, demi_spots *spots) {
     const double r = demi_part_equal(o->part);
