@@ -425,7 +425,7 @@ static void prisms_of(dem_world *w, dem_material m) {
 /* Cells without a plane to compare with, and those that are known to differ from it. */
 static int left_out(int body, int floor, int impulses) {
     if (body == POLYGON && !planar_floor(floor)) return 1;
-    /* bodies side by side are not one surface: up to 1.9 R, 1.3 v and 1.0 v/R, by springs 0.4 R, 0.35 v and 0.6 v/R */
+    /* a contact with a fixed body is not one with a wall: tests/contact/test_flush.c compares blocks with one block */
     if (floor == FIXED) return 1;
     /* a belt carries what rubs on it, which no floor at rest does */
     if (floor == BELTS && floor_friction > 0) return 1;
