@@ -22577,6 +22577,12 @@ static int demi_flush_ignores(const dem_world *w, int a, const demi_flush_row *o
 static dem_real demi_flush_reach(const dem_world *w, const demi_part *p, const demi_flush_row *b) {
     return 2*p->radius + 2*demi_range(w, p->radius + b->radius);
 }
+/* True if x may be in o, which link l of b leads to. way: to the centre of b, m. */
+static int demi_flush_around(const demi_flush_row *b, const demi_flush_row *o,
+                             const demi_flush_link *l, dem_vec3 way, demi_d3 x) {
+    const demi_d3 to = demi_d3_sub(x, demi_d3_of(demi_add(way, l->way)));
+    return demi_d3_length(to) < (double)o->radius*1.001 + demi_flush_tiny(b, o);
+}
 /* True if another fixed body covers the point of b nearest to p, a sphere or an ellipsoid. */
 static int demi_flush_covers(const dem_world *w, int a, const demi_part *p,
                              const demi_flush_row *b, int j, dem_vec3 way) {
@@ -22593,7 +22599,8 @@ static int demi_flush_covers(const dem_world *w, int a, const demi_part *p,
         const demi_flush_row *o = &w->flush.rows[l->to];
         for (i = 0; i < o->count && !demi_flush_ignores(w, a, o); i++) {
             double its;
-            if (!demi_flush_solid(w, p, o, i, demi_add(way, l->way), reach, &t) ||
+            if (!(p->kind == DEMI_ELLIPSOID || demi_flush_around(b, o, l, way, x)) ||
+                !demi_flush_solid(w, p, o, i, demi_add(way, l->way), reach, &t) ||
                 !demi_solid_about(&t, x, demi_flush_tiny(b, o))) continue;
             its = demi_solid_near(&t, demi_d(0, 0, 0), &y);
             if (its < off - even || (its <= off + even && demi_flush_before(l))) return 1;
@@ -22623,6 +22630,7 @@ static int demi_flush_continues(const dem_world *w, int a, const demi_part *p,
     for (k = b->from; k < b->to; k++) {
         const demi_flush_link *l = &w->flush.links[k];
         const demi_flush_row *o = &w->flush.rows[l->to];
+        if (!demi_flush_around(b, o, l, way, x)) continue;
         for (i = 0; i < o->count && !demi_flush_ignores(w, a, o); i++) {
             if (!demi_flush_solid(w, p, o, i, demi_add(way, l->way), reach, &t) ||
                 !demi_solid_about(&t, x, demi_flush_tiny(b, o))) continue;
@@ -22703,11 +22711,19 @@ static void demi_flush_face(const demi_solid *s, const demi_solid *t, int f,
    without what others cover. */
 static void demi_flush_part(const dem_world *w, int a, const demi_part *p, const demi_solid *s,
                             const demi_flush_row *o, int i, dem_vec3 way, demi_pressure *out) {
+    unsigned char pressed[DEM_POLYHEDRON_FACES];
     demi_solid t, other;
+    demi_part own;
     int f, g, k, j;
     memset(out, 0, sizeof *out);
-    if (!demi_flush_solid(w, p, o, i, way, p->radius, &t)) return;
-    for (f = 0; f < t.faces; f++) demi_flush_face(s, &t, f, 0, 0, out);
+    if (!demi_flush_piece_of(w, o, i, way, &own) ||
+        demi_face_keeps(&own, p, demi_scale(own.centre, -1)) ||
+        !demi_flush_solid(w, p, o, i, way, p->radius, &t)) return;
+    for (f = 0; f < t.faces; f++) {
+        const double had = out->sum;
+        demi_flush_face(s, &t, f, 0, 0, out);
+        pressed[f] = out->sum > had;
+    }
     if (demi_solid_holds(&t, s->centre))
         demi_pressure_beyond(s, demi_d3_unit(t.centre), out);
     for (k = o->from; k < o->to && out->sum > 0; k++) {
@@ -22715,9 +22731,13 @@ static void demi_flush_part(const dem_world *w, int a, const demi_part *p, const
         const demi_flush_row *b = &w->flush.rows[l->to];
         if (!l->faced || demi_flush_ignores(w, a, b)) continue;
         for (j = 0; j < b->count; j++) {
-            if (!demi_flush_solid(w, p, b, j, demi_add(way, l->way), p->radius, &other)) continue;
-            for (f = 0; f < t.faces; f++)
-                for (g = 0; g < other.faces; g++)
+            const demi_part *q = &w->flush.pieces[b->first + j].part;
+            const demi_d3 x = demi_d3_of(demi_add(demi_add(way, l->way), q->centre));
+            for (f = 0; f < t.faces && !(pressed[f] && demi_solid_in(&t, f, x) < 1e-6); f++);
+            if (f == t.faces ||         /* it is beyond no face with pressure */
+                !demi_flush_solid(w, p, b, j, demi_add(way, l->way), p->radius, &other)) continue;
+            for (; f < t.faces; f++)
+                for (g = 0; g < other.faces && pressed[f]; g++)
                     if (demi_faces_opposite(&t, f, &other, g, demi_flush_tiny(o, b)))
                         demi_flush_face(s, &t, f, &other, g, out);
         }
