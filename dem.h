@@ -3995,7 +3995,7 @@ static double demi_clock(void) {                          /* wall time, s; for p
    >>printing
    Formatted text with a decimal point in every locale: error messages, reports, progress lines.
    printf takes the decimal mark of the locale, which the program that includes dem.h may have set.
-   Numbers in files are written by demi_format_real.
+   Files are written by fprintf, with numbers from demi_format_real.
    Tests: tests/core/test_printing.c.
    --------------------------------------------------------------------------------------------- */
 /* Where text goes: `file`, or if that is null `to`, which has room for `room` bytes. n: bytes so
@@ -4004,17 +4004,21 @@ typedef struct demi_ink { FILE *file; char *to; size_t room; int n; } demi_ink;
 #define DEMI_INK(x) \
     o->n += o->file ? fprintf(o->file, how, x) \
         : snprintf(o->to + o->n, (size_t)o->n < o->room ? o->room - (size_t)o->n : 0, how, x)
+/* Replaces the decimal mark of a printed number, of any length, by a point. Returns `text`. */
+static const char *demi_pointed(char *text) {
+    char *mark = text + strspn(text, " 0123456789+-.einfa");
+    const size_t size = strcspn(mark, "0123456789e");
+    if (size) {
+        *mark = '.';
+        memmove(mark + 1, mark + size, strlen(mark + size) + 1);
+    }
+    return text;
+}
 /* Prints a number with the format `how`, which has no other conversion. */
 static void demi_ink_real(demi_ink *o, const char *how, double x) {
     char text[512];
-    size_t k = 0, mark;
     snprintf(text, sizeof text, how, x);
-    k = strspn(text, " 0123456789+-.einfaINFAE");
-    mark = strcspn(text + k, "0123456789e");
-    if (mark) {
-        text[k] = '.';
-        memmove(text + k + 1, text + k + mark, strlen(text + k + mark) + 1);
-    }
+    demi_pointed(text);
     how = "%s";
     DEMI_INK(text);
 }
@@ -10666,22 +10670,24 @@ typedef struct demi_integrator_row {
     void (*finish)(dem_world *w, int begin, int end);       /* second half kick, if any */
     int order;
     int backward;                  /* 1: needs last_pos, the positions of the last step */
+    dem_real back;                 /* how far before the end of a step its half-step velocity
+                                      holds, in steps */
     int predicts;                  /* 1: contact laws use velocities that the forces of the step
                                       still change */
 } demi_integrator_row;
 static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator */
-    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0, 1},
-    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0, 0},
-    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0},
-    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, 1},
-    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
+    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0, DEM_R(0.5), 1},
+    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0, 1, 0},
+    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0, 0},
+    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, DEM_R(0.5), 1},
+    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, DEM_R(0.5), 1},
 };
 enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
 /* Returns the scheme in force: the midpoint rule with impulses, otherwise that of
    desc.integrator. */
 static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
     static const demi_integrator_row midpoint = {"the midpoint rule", demi_move_midpoint,
-                                                 demi_finish_nothing, 2, 1, 0};
+                                                 demi_finish_nothing, 2, 1, DEM_R(0.5), 0};
     return demi_response_is(w, DEMI_MIDWAY) ? &midpoint
         : demi_integrator_rows + w->desc.integrator;
 }
@@ -10806,8 +10812,7 @@ static double demi_cell_map(const dem_world *w, double *by) {
 /* Moves the bodies begin .. end - 1 with the flow, for one step. */
 static void demi_cell_carry(dem_world *w, int begin, int end) {
     const demi_strained *c = &w->cell;
-    const dem_real dt = w->clock.dt, back = w->desc.integrator == DEM_INTEGRATOR_FORWARD_EULER ? dt
-        : w->desc.integrator == DEM_INTEGRATOR_SYMPLECTIC_EULER ? 0 : dt/2;
+    const dem_real dt = w->clock.dt, back = demi_integrator_of(w)->back*dt;
     double by[3], shear = demi_cell_map(w, by);
     int i, k;
     for (i = begin; i < end; i++) {
@@ -22474,7 +22479,6 @@ static uint64_t demi_flush_digest(const dem_world *w, int *count) {
     int slot, k;
     for (slot = *count = 0; slot < w->bodies.slot_count && w->bodies.shaped; slot++) {
         const int i = w->bodies.slot_index[slot];
-        const unsigned char *at;
         double x[11];
         if (i < 0 || !demi_flush_is(w, i)) continue;
         for (k = 0; k < 4; k++) x[k] = (double)w->bodies.pos[4*i + k];
@@ -22482,8 +22486,7 @@ static uint64_t demi_flush_digest(const dem_world *w, int *count) {
         x[8] = slot;
         x[9] = w->bodies.shape[i];
         x[10] = w->bodies.material[i];
-        for (at = (const unsigned char *)x, k = 0; k < (int)sizeof x; k++)
-            digest = (digest ^ at[k])*UINT64_C(1099511628211);
+        digest = demi_hash(digest, x, sizeof x);
         ++*count;
     }
     return digest;
@@ -24600,9 +24603,10 @@ static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
    while a has its part of all (demi_kept_more). Over all parts, the two are the same. */
 DEM_INLINE dem_vec3 demi_kept_own(demi_kept_tile *t, int q, dem_vec3 *moment) {
     const demi_kept *c = t->contact[q];
-    const dem_real press = t->share[q]*t->rows.repulsion[q];
+    dem_real press;
     *moment = demi_row(t->rows.moment, q);
     if (!c->odd || !(c->more.part > 0)) return demi_row(t->rows.force, q);
+    press = t->share[q]*t->rows.repulsion[q];
     *moment = demi_sub(*moment, demi_scale(c->more.turn, press));
     return demi_sub(demi_row(t->rows.force, q), demi_scale(c->more.lean, press));
 }
@@ -24610,11 +24614,11 @@ DEM_INLINE dem_vec3 demi_kept_own(demi_kept_tile *t, int q, dem_vec3 *moment) {
 static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
     demi_kept *c = t->contact[q];
     const dem_vec3 force = demi_row(t->rows.force, q);
-    c->force = force;
     demi_force_add(w->bodies.force + 4*c->a, force);
     demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
     if (c->b >= 0) {                            /* several contacts may share a slot */
         dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
+        c->force = force;
         demi_force_add(out ? out : w->bodies.force + 4*c->b, demi_scale(force, -1));
         demi_force_add(out ? out + 3 : w->bodies.torque + 4*c->b, demi_row(t->rows.torque[1], q));
     } else {
@@ -35483,15 +35487,8 @@ static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh) {
 
 /* Prints a number with a decimal point in every locale. Returns `buffer`, of at least 32 bytes. */
 static const char *demi_format_real(char *buffer, double value, int digits) {
-    char raw[64];
-    size_t i, n = 0;
-    snprintf(raw, sizeof raw, "%.*g", digits, value);
-    for (i = 0; raw[i] && n < 31; i++) {
-        if (strchr("0123456789+-einfa", raw[i])) buffer[n++] = raw[i];
-        else if (n == 0 || buffer[n - 1] != '.') buffer[n++] = '.';
-    }
-    buffer[n] = 0;
-    return buffer;
+    snprintf(buffer, 32, "%.*g", digits, value);
+    return demi_pointed(buffer);
 }
 
 /* Fills in the part of a mesh's health that each triangle gives separately: bounding box, number of
@@ -40412,6 +40409,7 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
     demi_made_of(w, &grains, &walls);
     for (i = 0; i < w->material_count; i++) {
         const dem_material_desc *m = &w->materials[i];
+        const char *lacks = demi_law_lacks(w, i);
         if (!((grains | walls) >> i & 1))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
         if (m->density < 10 || m->density > 25000)
@@ -40433,11 +40431,10 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_WARNING,
                       "material %d has a rolling friction of %g: it is a fraction of the "
                       "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
-        if (demi_law_lacks(w, i))
+        if (lacks)
             demi_find(f, DEM_SEVERITY_WARNING, "desc.law exerts no moment against the %s of "
                       "material %d, so its grains %s freely: define the law by DEM_LAW_ROLLING, "
-                      "or set this friction to 0", demi_law_lacks(w, i), i + 1,
-                      demi_law_lacks(w, i)[0] == 'r' ? "roll" : "spin");
+                      "or set this friction to 0", lacks, i + 1, *lacks == 'r' ? "roll" : "spin");
         if (m->rolling_friction > 0 && !(m->friction > 0))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
                       "friction: its grains slide instead of rolling", i + 1);
@@ -41645,11 +41642,12 @@ static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
 static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
     const int law = demi_rolling_meant(w);
     int i;
-    for (i = 0; i < w->material_count; i++)
-        if (demi_law_lacks(w, i)) {
-            demi_say(e, 0, "desc.law ignores the %s of material %d", demi_law_lacks(w, i), i + 1);
-            return DEM_EFFECT_OFF;
-        }
+    for (i = 0; i < w->material_count; i++) {
+        const char *lacks = demi_law_lacks(w, i);
+        if (!lacks) continue;
+        demi_say(e, 0, "desc.law ignores the %s of material %d", lacks, i + 1);
+        return DEM_EFFECT_OFF;
+    }
     return demi_look_response(w, demi_rolls, law == DEM_ROLLING_NONE ? 0
                               : demi_rolling_laws[law].name, "rolling_law is DEM_ROLLING_NONE", e);
 }
@@ -42313,7 +42311,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     const demi_laws *laws = &w->laws;
     char text[64];
     int i;
-    const char *unused = "";
+    const char *unused = "", *lacks;
 #ifdef DEM_LAW
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
@@ -42333,9 +42331,9 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         demi_print(out, "effects    normal, tangential, rolling: user-defined law; spins and "
                    "torques are followed; %d reals of memory per contact\n", w->desc.law_memory);
         for (i = 0; i < w->material_count; i++)
-            if (demi_law_lacks(w, i))
+            if ((lacks = demi_law_lacks(w, i)) != 0)
                 demi_print(out, "           it exerts no moment against the %s of material %d\n",
-                           demi_law_lacks(w, i), i + 1);
+                           lacks, i + 1);
         if (w->margin.reach > 0)
             demi_print(out, "           called for gaps below %.3g m, in contact or not\n",
                        w->margin.reach);

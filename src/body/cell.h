@@ -103,8 +103,7 @@ static double demi_cell_map(const dem_world *w, double *by) {
 /* Moves the bodies begin .. end - 1 with the flow, for one step. */
 static void demi_cell_carry(dem_world *w, int begin, int end) {
     const demi_strained *c = &w->cell;
-    const dem_real dt = w->clock.dt, back = w->desc.integrator == DEM_INTEGRATOR_FORWARD_EULER ? dt
-        : w->desc.integrator == DEM_INTEGRATOR_SYMPLECTIC_EULER ? 0 : dt/2;
+    const dem_real dt = w->clock.dt, back = demi_integrator_of(w)->back*dt;
     double by[3], shear = demi_cell_map(w, by);
     int i, k;
     for (i = begin; i < end; i++) {

@@ -541,22 +541,24 @@ typedef struct demi_integrator_row {
     void (*finish)(dem_world *w, int begin, int end);       /* second half kick, if any */
     int order;
     int backward;                  /* 1: needs last_pos, the positions of the last step */
+    dem_real back;                 /* how far before the end of a step its half-step velocity
+                                      holds, in steps */
     int predicts;                  /* 1: contact laws use velocities that the forces of the step
                                       still change */
 } demi_integrator_row;
 static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator */
-    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0, 1},
-    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0, 0},
-    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0},
-    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, 1},
-    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
+    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0, DEM_R(0.5), 1},
+    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0, 1, 0},
+    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0, 0},
+    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, DEM_R(0.5), 1},
+    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, DEM_R(0.5), 1},
 };
 enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
 /* Returns the scheme in force: the midpoint rule with impulses, otherwise that of
    desc.integrator. */
 static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
     static const demi_integrator_row midpoint = {"the midpoint rule", demi_move_midpoint,
-                                                 demi_finish_nothing, 2, 1, 0};
+                                                 demi_finish_nothing, 2, 1, DEM_R(0.5), 0};
     return demi_response_is(w, DEMI_MIDWAY) ? &midpoint
         : demi_integrator_rows + w->desc.integrator;
 }

@@ -185,7 +185,6 @@ static uint64_t demi_flush_digest(const dem_world *w, int *count) {
     int slot, k;
     for (slot = *count = 0; slot < w->bodies.slot_count && w->bodies.shaped; slot++) {
         const int i = w->bodies.slot_index[slot];
-        const unsigned char *at;
         double x[11];
         if (i < 0 || !demi_flush_is(w, i)) continue;
         for (k = 0; k < 4; k++) x[k] = (double)w->bodies.pos[4*i + k];
@@ -193,8 +192,7 @@ static uint64_t demi_flush_digest(const dem_world *w, int *count) {
         x[8] = slot;
         x[9] = w->bodies.shape[i];
         x[10] = w->bodies.material[i];
-        for (at = (const unsigned char *)x, k = 0; k < (int)sizeof x; k++)
-            digest = (digest ^ at[k])*UINT64_C(1099511628211);
+        digest = demi_hash(digest, x, sizeof x);
         ++*count;
     }
     return digest;

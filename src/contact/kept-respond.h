@@ -535,9 +535,10 @@ static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
    while a has its part of all (demi_kept_more). Over all parts, the two are the same. */
 DEM_INLINE dem_vec3 demi_kept_own(demi_kept_tile *t, int q, dem_vec3 *moment) {
     const demi_kept *c = t->contact[q];
-    const dem_real press = t->share[q]*t->rows.repulsion[q];
+    dem_real press;
     *moment = demi_row(t->rows.moment, q);
     if (!c->odd || !(c->more.part > 0)) return demi_row(t->rows.force, q);
+    press = t->share[q]*t->rows.repulsion[q];
     *moment = demi_sub(*moment, demi_scale(c->more.turn, press));
     return demi_sub(demi_row(t->rows.force, q), demi_scale(c->more.lean, press));
 }
@@ -545,11 +546,11 @@ DEM_INLINE dem_vec3 demi_kept_own(demi_kept_tile *t, int q, dem_vec3 *moment) {
 static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
     demi_kept *c = t->contact[q];
     const dem_vec3 force = demi_row(t->rows.force, q);
-    c->force = force;
     demi_force_add(w->bodies.force + 4*c->a, force);
     demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
     if (c->b >= 0) {                            /* several contacts may share a slot */
         dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
+        c->force = force;
         demi_force_add(out ? out : w->bodies.force + 4*c->b, demi_scale(force, -1));
         demi_force_add(out ? out + 3 : w->bodies.torque + 4*c->b, demi_row(t->rows.torque[1], q));
     } else {

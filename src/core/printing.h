@@ -2,7 +2,7 @@
    >>printing
    Formatted text with a decimal point in every locale: error messages, reports, progress lines.
    printf takes the decimal mark of the locale, which the program that includes dem.h may have set.
-   Numbers in files are written by demi_format_real.
+   Files are written by fprintf, with numbers from demi_format_real.
    Tests: tests/core/test_printing.c.
    --------------------------------------------------------------------------------------------- */
 /* Where text goes: `file`, or if that is null `to`, which has room for `room` bytes. n: bytes so
@@ -11,17 +11,21 @@ typedef struct demi_ink { FILE *file; char *to; size_t room; int n; } demi_ink;
 #define DEMI_INK(x) \
     o->n += o->file ? fprintf(o->file, how, x) \
         : snprintf(o->to + o->n, (size_t)o->n < o->room ? o->room - (size_t)o->n : 0, how, x)
+/* Replaces the decimal mark of a printed number, of any length, by a point. Returns `text`. */
+static const char *demi_pointed(char *text) {
+    char *mark = text + strspn(text, " 0123456789+-.einfa");
+    const size_t size = strcspn(mark, "0123456789e");
+    if (size) {
+        *mark = '.';
+        memmove(mark + 1, mark + size, strlen(mark + size) + 1);
+    }
+    return text;
+}
 /* Prints a number with the format `how`, which has no other conversion. */
 static void demi_ink_real(demi_ink *o, const char *how, double x) {
     char text[512];
-    size_t k = 0, mark;
     snprintf(text, sizeof text, how, x);
-    k = strspn(text, " 0123456789+-.einfaINFAE");
-    mark = strcspn(text + k, "0123456789e");
-    if (mark) {
-        text[k] = '.';
-        memmove(text + k + 1, text + k + mark, strlen(text + k + mark) + 1);
-    }
+    demi_pointed(text);
     how = "%s";
     DEMI_INK(text);
 }

@@ -421,15 +421,8 @@ static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh) {
 
 /* Prints a number with a decimal point in every locale. Returns `buffer`, of at least 32 bytes. */
 static const char *demi_format_real(char *buffer, double value, int digits) {
-    char raw[64];
-    size_t i, n = 0;
-    snprintf(raw, sizeof raw, "%.*g", digits, value);
-    for (i = 0; raw[i] && n < 31; i++) {
-        if (strchr("0123456789+-einfa", raw[i])) buffer[n++] = raw[i];
-        else if (n == 0 || buffer[n - 1] != '.') buffer[n++] = '.';
-    }
-    buffer[n] = 0;
-    return buffer;
+    snprintf(buffer, 32, "%.*g", digits, value);
+    return demi_pointed(buffer);
 }
 
 /* Fills in the part of a mesh's health that each triangle gives separately: bounding box, number of

@@ -85,6 +85,7 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
     demi_made_of(w, &grains, &walls);
     for (i = 0; i < w->material_count; i++) {
         const dem_material_desc *m = &w->materials[i];
+        const char *lacks = demi_law_lacks(w, i);
         if (!((grains | walls) >> i & 1))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
         if (m->density < 10 || m->density > 25000)
@@ -106,11 +107,10 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_WARNING,
                       "material %d has a rolling friction of %g: it is a fraction of the "
                       "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
-        if (demi_law_lacks(w, i))
+        if (lacks)
             demi_find(f, DEM_SEVERITY_WARNING, "desc.law exerts no moment against the %s of "
                       "material %d, so its grains %s freely: define the law by DEM_LAW_ROLLING, "
-                      "or set this friction to 0", demi_law_lacks(w, i), i + 1,
-                      demi_law_lacks(w, i)[0] == 'r' ? "roll" : "spin");
+                      "or set this friction to 0", lacks, i + 1, *lacks == 'r' ? "roll" : "spin");
         if (m->rolling_friction > 0 && !(m->friction > 0))
             demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
                       "friction: its grains slide instead of rolling", i + 1);

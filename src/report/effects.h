@@ -91,11 +91,12 @@ static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
 static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
     const int law = demi_rolling_meant(w);
     int i;
-    for (i = 0; i < w->material_count; i++)
-        if (demi_law_lacks(w, i)) {
-            demi_say(e, 0, "desc.law ignores the %s of material %d", demi_law_lacks(w, i), i + 1);
-            return DEM_EFFECT_OFF;
-        }
+    for (i = 0; i < w->material_count; i++) {
+        const char *lacks = demi_law_lacks(w, i);
+        if (!lacks) continue;
+        demi_say(e, 0, "desc.law ignores the %s of material %d", lacks, i + 1);
+        return DEM_EFFECT_OFF;
+    }
     return demi_look_response(w, demi_rolls, law == DEM_ROLLING_NONE ? 0
                               : demi_rolling_laws[law].name, "rolling_law is DEM_ROLLING_NONE", e);
 }

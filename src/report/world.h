@@ -187,7 +187,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     const demi_laws *laws = &w->laws;
     char text[64];
     int i;
-    const char *unused = "";
+    const char *unused = "", *lacks;
 #ifdef DEM_LAW
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
@@ -207,9 +207,9 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         demi_print(out, "effects    normal, tangential, rolling: user-defined law; spins and "
                    "torques are followed; %d reals of memory per contact\n", w->desc.law_memory);
         for (i = 0; i < w->material_count; i++)
-            if (demi_law_lacks(w, i))
+            if ((lacks = demi_law_lacks(w, i)) != 0)
                 demi_print(out, "           it exerts no moment against the %s of material %d\n",
-                           demi_law_lacks(w, i), i + 1);
+                           lacks, i + 1);
         if (w->margin.reach > 0)
             demi_print(out, "           called for gaps below %.3g m, in contact or not\n",
                        w->margin.reach);
