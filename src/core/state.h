@@ -48,6 +48,9 @@ typedef struct demi_stages {
        next try keeps them, because the counts behind the choice may be lost */
     int skin_chosen, near_chosen;
 } demi_stages;
+/* Wall candidates of a body: first .. end - 1, end 0 if there are none. gap: m, to the nearest sheet
+   among them, or DEMI_ONLY_SHEET; negative if it is not known. */
+typedef struct demi_walled { int32_t first, end; dem_real gap; } demi_walled;
 typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are valid */
     double skin, gone, walls_gone; /* m: skin; largest displacement of a body and of a wall point
                                       since the rebuild */
@@ -496,7 +499,7 @@ struct dem_world {
                                       was built */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image at the wall */
     int32_t *wall_cell;            /* of a tessellation that repeats: see demi_cell_shift */
-    int32_t *walled;               /* bodies: 1 + first wall candidate, 0: none (if `sheeted`) */
+    demi_walled *walled;           /* bodies (if `sheeted`) */
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     /* if the law writes rates of user-defined numbers: domain_count x wall_count x real_count, and
        real_count for each entry of cross_force; else null */

@@ -166,17 +166,29 @@ static void demi_domain_walls(dem_world *w, int d) {
     domain->overflow &= ~4;
     for (i = domain->begin; i < domain->end; i++) demi_body_walls(w, d, i);
 }
-/* Notes the first wall candidate of each body, while some surface is a sheet. Returns 0 if memory
-   ran out. */
+/* Notes wall candidates first .. end - 1, those of one work group, with their bodies. */
+static void demi_walled_add(dem_world *w, int first, int end) {
+    int k;
+    for (k = first; k < end; k++) {
+        demi_walled *of = w->walled + w->wall_body[k];
+        if (!of->end) of->first = k;
+        of->end = k + 1;
+        if (demi_surface_of(w, w->wall_id[k])->open)
+            of->gap = DEMI_MIN(of->gap, w->wall_gap[k] < DEMI_ONLY_SHEET ? w->wall_gap[k]
+                                                                         : -DEMI_ONLY_SHEET);
+    }
+}
+/* Notes the wall candidates of each body, while some surface is a sheet. Returns 0 if memory ran
+   out. */
 static int demi_walled_note(dem_world *w) {
-    const size_t n = (size_t)w->bodies.count + (size_t)w->join_room;
-    int d, k;
+    const demi_walled none = {0, 0, DEMI_ONLY_SHEET};
+    const int n = w->bodies.count + w->join_room;
+    int d, i;
     if (!w->sheeted) return 1;
-    if (!DEMI_GROW(w, w->walled, n)) return 0;
-    memset(w->walled, 0, n*sizeof *w->walled);
+    if (!DEMI_GROW(w, w->walled, (size_t)n)) return 0;
+    for (i = 0; i < n; i++) w->walled[i] = none;
     for (d = 0; d < w->domain_count; d++)
-        for (k = d*w->wall_stride + w->domains[d].walls - 1; k >= d*w->wall_stride; k--)
-            w->walled[w->wall_body[k]] = 1 + k;
+        demi_walled_add(w, d*w->wall_stride, d*w->wall_stride + w->domains[d].walls);
     return 1;
 }
 

@@ -301,8 +301,8 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     if (w->domains[last].walls - walls >= w->join_room) return 0;
     w->join_room -= w->domains[last].walls - walls;
     if (w->domains[last].walls > walls) w->touching_valid = 0;
-    if (w->sheeted) w->walled[i] = w->domains[last].walls > walls
-        ? 1 + last*w->wall_stride + walls : 0;
+    if (w->sheeted) demi_walled_add(w, last*w->wall_stride + walls,
+                                    last*w->wall_stride + w->domains[last].walls);
     demi_quiet_at(w, last, i)->restless = 2;
     w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
     return 1;

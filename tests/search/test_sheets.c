@@ -96,7 +96,7 @@ static dem_body_state hit(int body, int kind, int impulses, int both, int other)
 
 /* How far the body that was added last extends above or below its centre, m. */
 static double reach_of(const dem_world *w, int kind, int up) {
-    const demi_shape *s = &w->shapes[w->shape_count - 1];
+    const demi_shape *s = w->shape_count ? &w->shapes[w->shape_count - 1] : 0;
     double most = kind == BALL ? R : kind == EGG ? 0.8*R : 0.55*R;
     int i;
     if (kind == CLUSTER)
