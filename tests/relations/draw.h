@@ -13,7 +13,7 @@ typedef struct rel_draw {
     double R, a, h;                            /* m: radius; half width and height of the container */
     int planar, impulses, periodic, round, moved;
     int material[3], materials;
-    int shape[4]; double reach[4]; int shapes;             /* op, -1: sphere; bounding radius, m */
+    int shape[12]; double reach[12]; int shapes;             /* op, -1: sphere; bounding radius, m */
     int wall[16], walls, container;            /* ops; how many of them belong to the container */
     int body[64], bodies;
 } rel_draw;
@@ -105,7 +105,6 @@ REL_OPTION(rel_normal_overlap, "ellipsoid_overlap", DEM_OVERLAP_NORMAL, !d->impu
 REL_OPTION(rel_separate, "cluster_contacts", DEM_CLUSTER_CONTACTS_SEPARATE, !d->impulses)
 REL_OPTION(rel_followed, "orientations", 1, 1)
 REL_OPTION(rel_ledger_on, "ledger", 1, 1)
-REL_OPTION(rel_planar, "planar", 1, (d->planar = 1))
 REL_OPTION(rel_search_pairs, "search", DEM_SEARCH_ALL_PAIRS, 1)
 REL_OPTION(rel_search_list, "search", DEM_SEARCH_LINKED_LIST, 1)
 REL_OPTION(rel_search_levels, "search", DEM_SEARCH_HIERARCHICAL, 1)
@@ -116,6 +115,11 @@ REL_OPTION(rel_skin_wide, "skin", 0.8*d->R, 1)
 REL_OPTION(rel_drag, "force", rel_code_of("drag"), 1)
 REL_OPTION(rel_swirl, "body_force", rel_code_of("swirl"), 1)
 REL_OPTION(rel_growth, "growth", rel_code_of("grow"), 1)
+static int rel_planar(rel_draw *d) {
+    rel_put(rel_the_world(d), "planar", 1);
+    rel_put(rel_the_world(d), "thickness", 2*d->R);
+    return d->planar = 1;
+}
 static int rel_numbers(rel_draw *d) {
     rel_put(rel_the_world(d), "body_reals", 0);
     if (rel_chance(d->r, 0.5)) rel_put(rel_the_world(d), "body_reals_fn", rel_code_of("numbers"));
@@ -246,7 +250,7 @@ static int rel_union(rel_draw *d) {
     rel_op *s;
     int i;
     for (i = 0; i < d->shapes && (d->shape[i] < 0 || d->s->op[d->shape[i]].call == REL_CLUSTER); i++) continue;
-    if (i == d->shapes || d->planar || d->shapes > 3) return 0;
+    if (i == d->shapes || d->planar || d->shapes > 10) return 0;
     of[0] = of[1] = d->shape[i];
     s = rel_add(d, REL_UNION, 0);
     at[0] = 0.4*d->R;

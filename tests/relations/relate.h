@@ -383,9 +383,12 @@ static int rel_scaled(rel_case *c) {
     rel_run other;
     int k, i, e, ran, result = REL_HOLDS;
     if (!c->ran || rel_code_flag(c, 0)) return REL_SKIPPED;
-    m.length = ldexp(1, 2*rel_below(&c->rng, 5) - 4);      /* powers of four, whose roots are exact */
-    m.time = ldexp(1, 2*rel_below(&c->rng, 3) - 2);
-    m.mass = ldexp(1, 2*rel_below(&c->rng, 5) - 4);
+    if ((rel_has(c, "linear") || rel_has(c, "hysteretic") || rel_has(c, "own law")) && !rel_has(c, "stiffness"))
+        return REL_SKIPPED;                    /* fifth roots */
+    /* square, cube and fourth roots of these are exact */
+    m.length = ldexp(1, 12*rel_below(&c->rng, 3) - 12);
+    m.time = ldexp(1, 4*rel_below(&c->rng, 3) - 4);
+    m.mass = ldexp(1, 4*rel_below(&c->rng, 5) - 8);
     rel_map_scene(&rel_image, c->s, &m);
     ran = rel_go(&other, &rel_image, &how);
     if (!ran) result = rel_broken(c, "lengths times %g, masses times %g, times times %g: %s", m.length, m.mass, m.time, other.message);
@@ -425,7 +428,7 @@ static int rel_order(rel_case *c, int walls) {
     int at[REL_OPS], n = 0, i, k, e, ran, result = REL_HOLDS;
     if (!c->ran || rel_has(c, "impulses") || rel_has(c, "feed")) return REL_SKIPPED;
     rel_copy(&rel_image, c->s);
-    for (i = 0; i < c->s->count; i++)
+    for (i = 0; i < c->s->count && !(walls && (c->s->op[i].call == REL_MOTION || c->s->op[i].call == REL_BELT)); i++)
         if (walls ? rel_is_wall(c->s->op[i].call) && !c->s->op[i].step : c->s->op[i].call == REL_A_BODY) at[n++] = i;
     if (n < 2) return REL_SKIPPED;
     for (i = 0; i < n/2; i++) rel_exchange(&rel_image, at[i], at[n - 1 - i]);
