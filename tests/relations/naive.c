@@ -14,7 +14,6 @@ typedef struct naive_plane { int material; naive_vec point, normal; } naive_plan
 typedef struct naive_memory {          /* of a pair of bodies, or of a body and a plane */
     int touches;
     double d;                          /* overlap of the last step, < 0 across a gap */
-    naive_vec n;                       /* normal of the last step */
     naive_vec xi;                      /* [CS79]: stretched by; other laws: force T_s of the spring */
     double kt;                         /* of the last step: rescaled law */
     naive_vec roll;                    /* moment of the rolling spring */
@@ -146,8 +145,11 @@ static void tangent_law(const naive_laws *laws, double dt, naive_touch *c, naive
         h->xi = plus(h->xi, dt*c->share, c->v_t_step);
         spring = times(-c->kt, h->xi);
     } else {
-        if (laws->tangent == NAIVE_RESCALED && h->kt > c->kt) h->xi = times(c->kt/h->kt, h->xi);
-        spring = h->xi = plus(h->xi, -c->kt_middle*dt*c->share, c->v_t_step);
+        /* while unloading T_s/kt is conserved: the increment, too, has the present kt */
+        const int unloads = laws->tangent == NAIVE_RESCALED && h->kt > c->kt;
+        if (unloads) h->xi = times(c->kt/h->kt, h->xi);
+        spring = plus(h->xi, -(unloads ? c->kt : c->kt_middle)*dt*c->share, c->v_t_step);
+        if (dt > 0) h->xi = spring;
     }
     t = plus(spring, -c->ct, c->v_t);
     if (size(t) > limit) cut = limit/size(t);
@@ -167,9 +169,9 @@ static void rolling_law(const naive_laws *laws, double dt, naive_touch *c, naive
     const double mu = c->pair->rolling_friction, limit = mu*c->R*c->load;
     naive_vec t;
     if (laws->rolling == NAIVE_CONSTANT) {
-        /* at rest (0.3/dt)^2 I with I = 2/5 m* R*^2, critically damped: 2 sqrt(kr I) = 0.6 I/dt */
+        /* at rest (0.3/dt)^2 I with I = 2/5 m* R*^2, critically damped: 2 sqrt(kr I). Before the first step: none */
         const double step = laws->dt, I = 2.0/5*c->m*c->R*c->R;
-        const double kr = 0.3/step*(0.3/step)*I, cr = 2*sqrt(kr*I);
+        const double kr = dt > 0 ? 0.3/step*(0.3/step)*I : 0, cr = 2*sqrt(kr*I);
         double cut = 1;
         h->roll = plus(h->roll, -kr*dt*c->share, c->w_step);
         t = plus(h->roll, -cr, c->w);
@@ -268,11 +270,10 @@ static void touch(naive *n, int i, int j, double dt) {
         n->count.began += began;
         n->count.attracted += c.F < 0;
         n->count.across += far_image;
-        if (c.d > n->count.deepest*a->R) n->count.deepest = c.d/a->R;
+        n->count.walls += j >= NAIVE_BODIES;
     }
     h->touches = c.d > 0;
     h->d = c.d;
-    h->n = c.n;
 }
 static void forces(naive *n, double dt) {
     int i, j;

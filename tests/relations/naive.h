@@ -34,9 +34,9 @@ typedef struct naive_pair {            /* of two materials; mixed from them unle
     double tangent_damping;            /* factor on ct */
 } naive_pair;
 typedef struct naive_state { naive_vec x, v, spin, force, torque; double mass; } naive_state;   /* without gravity */
-/* Contacts since the start: those that began; and steps of a contact in which it slid, stuck, attracted, had its
-   rolling spring at the limit, or joined two bodies across a periodic face. */
-typedef struct naive_count { long began, slid, stuck, attracted, rolled, across; double deepest; } naive_count;
+/* Since the start: contacts that began, and steps of contacts: those that slid, stuck, attracted, had the largest
+   moment of rolling resistance, touched across a periodic face, or touched a plane. */
+typedef struct naive_count { long began, slid, stuck, attracted, rolled, across, walls; } naive_count;
 typedef struct naive naive;
 
 naive *naive_create(const naive_laws *laws);                            /* null: no memory */
