@@ -12,18 +12,16 @@ typedef struct naive_body {
 } naive_body;
 typedef struct naive_plane { int material; naive_vec point, normal; } naive_plane;
 typedef struct naive_memory {          /* of a pair of bodies, or of a body and a plane */
-    int touches;
-    double d;                          /* overlap of the last step, < 0 across a gap */
+    int touches, slides;               /* slides: bears up to mu, not mu_s, times the load */
+    double D, kt;                      /* depth of the hysteretic law; kt of the last step */
     naive_vec xi;                      /* [CS79]: stretched by; other laws: force T_s of the spring */
-    double kt;                         /* of the last step: rescaled law */
     naive_vec roll;                    /* moment of the rolling spring */
 } naive_memory;
 struct naive {
     naive_laws laws;
     naive_material material[NAIVE_MATERIALS];
     naive_pair pair[NAIVE_MATERIALS][NAIVE_MATERIALS];
-    naive_body body[NAIVE_BODIES];
-    naive_plane plane[NAIVE_PLANES];
+    naive_body body[NAIVE_BODIES]; naive_plane plane[NAIVE_PLANES];
     naive_memory memory[NAIVE_BODIES][NAIVE_BODIES + NAIVE_PLANES];
     int materials, bodies, planes, started;
     naive_count count;
@@ -42,19 +40,18 @@ static naive_vec cross(naive_vec a, naive_vec b) {
 }
 static naive_vec across(naive_vec a, naive_vec n) { return plus(a, -dot(a, n), n); }
 
-/* ---- materials and pairs ---- */
-/* Mean values as the comment at dem_pair defines them. */
+/* ---- materials and pairs: means as the comment at dem_pair defines them ---- */
 static naive_pair mixed(const naive_material *a, const naive_material *b) {
     naive_pair p;
     const double nu = (a->poisson + b->poisson)/2;
     p.restitution = sqrt(a->restitution*b->restitution);
     p.friction = sqrt(a->friction*b->friction);
+    p.friction_static = sqrt(fmax(a->friction_static, a->friction)*fmax(b->friction_static, b->friction));
     p.rolling_friction = sqrt(a->rolling_friction*b->rolling_friction);
-    p.stiffness = a->stiffness > 0 && b->stiffness > 0
-                ? 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness) : 0;
+    p.stiffness = 2*a->stiffness*b->stiffness/fmax(a->stiffness + b->stiffness, 1e-30); /* 0 unless both give one */
     p.ratio = a->ratio > 0 && b->ratio > 0 ? sqrt(a->ratio*b->ratio) : 2*(1 - nu)/(2 - nu);
-    p.normal_damping = 0;
-    p.tangent_damping = 1;
+    p.adhesion = sqrt(a->adhesion*b->adhesion);
+    p.normal_damping = 0; p.tangent_damping = 1;
     return p;
 }
 /* 1/E* = sum (1 - nu^2)/E */
@@ -88,59 +85,63 @@ static double damping_ratio(double e, int tension) {
 typedef struct naive_touch {
     const naive_pair *pair;
     const naive_material *a, *b;
-    double d, R, m;                    /* overlap, R*, m* */
     naive_vec n;
-    double v_n;                        /* closing speed */
+    double d, R, m, v_n;               /* overlap, R*, m*, closing speed */
     naive_vec v_t, w;                  /* slip, relative spin across n: of the predicted velocities */
     naive_vec v_t_step, w_step;        /* and of the displacements of the step */
-    double twist;                      /* mean spin of the two about n, in that step */
     double share, middle;              /* part of the step in which the two touched, mean overlap of that part */
-    double F, elastic, load;           /* results of the normal law */
-    double kt, kt_middle, ct;
-    double k, k_middle;                /* dF/dd */
+    double F, elastic, load, ct;       /* results of the normal law */
+    double kt, kt_middle, k, k_middle; /* k: dF/dd; middle: at that mean overlap */
     naive_vec T, M;                    /* force and moment on a */
 } naive_touch;
 
-static void normal_law(const naive_laws *laws, naive_touch *c) {
+static void normal_law(const naive_laws *laws, double dt, naive_touch *c, naive_memory *h) {
     const naive_pair *p = c->pair;
-    const double beta = damping_ratio(p->restitution, laws->tension);
+    const double beta = damping_ratio(p->restitution, laws->tension), d = c->d, R = c->R, m = c->m;
     const double E = young_eff(c->a, c->b), G = shear_eff(c->a, c->b);
-    if (laws->normal == NAIVE_HERTZ) {
-        const double kn = 4.0/3*E*sqrt(c->R), cn = 2*sqrt(5.0/6)*beta*sqrt(2*E*sqrt(c->R)*c->m);
-        c->elastic = kn*pow(c->d, 1.5);
-        c->F = c->elastic + cn*pow(c->d, 0.25)*c->v_n;
-        c->kt = 8*G*sqrt(c->R*c->d);
-        c->kt_middle = 8*G*sqrt(c->R*c->middle);
-        c->ct = 2*sqrt(5.0/6)*beta*sqrt(8*G*sqrt(c->R)*c->m)*pow(c->d, 0.25);
-        c->k = 1.5*kn*sqrt(c->d);
+    const double v = laws->impact_speed > 0 ? laws->impact_speed : 1;
+    double kn = p->stiffness > 0 ? p->stiffness : pow(320.0/81*m*v*v*pow(E, 4)*R*R, 0.2), cn = 2*beta*sqrt(kn*m);
+    double hold = 0;
+    if (p->normal_damping > 0) cn = p->normal_damping;
+    c->kt = c->kt_middle = p->ratio*kn;
+    c->ct = 2*beta*sqrt(c->kt*m);
+    c->k = c->k_middle = kn;
+    c->elastic = kn*d;
+    if (laws->normal == NAIVE_LINEAR) c->F = c->elastic + cn*c->v_n;
+    else if (laws->normal == NAIVE_HERTZ) {
+        kn = 4.0/3*E*sqrt(R);
+        cn = 2*sqrt(5.0/6)*beta*sqrt(2*E*sqrt(R)*m);
+        c->elastic = kn*pow(d, 1.5);
+        c->F = c->elastic + cn*pow(d, 0.25)*c->v_n;
+        c->kt = 8*G*sqrt(R*d);
+        c->kt_middle = 8*G*sqrt(R*c->middle);
+        c->ct = 2*sqrt(5.0/6)*beta*sqrt(8*G*sqrt(R)*m)*pow(d, 0.25);
+        c->k = 1.5*kn*sqrt(d);
         c->k_middle = 1.5*kn*sqrt(c->middle);
     } else {
-        const double v = laws->impact_speed > 0 ? laws->impact_speed : 1;
-        const double kn = p->stiffness > 0 ? p->stiffness
-                        : pow(320.0/81*c->m*v*v*pow(E, 4)*c->R*c->R, 0.2);
-        const double cn = p->normal_damping > 0 ? p->normal_damping : 2*beta*sqrt(kn*c->m);
-        c->elastic = kn*c->d;
-        c->F = c->elastic + cn*c->v_n;
-        c->kt = c->kt_middle = p->ratio*kn;
-        c->ct = 2*beta*sqrt(c->kt*c->m);
-        c->k = c->k_middle = kn;
+        const double kun = kn/(p->restitution*p->restitution), kad = p->adhesion;
+        const double D = fmin(fmax(h->D, d), d*(kun + kad)/(kun - kn));
+        c->elastic = kun*d - (kun - kn)*D;
+        c->F = c->elastic + (p->normal_damping > 0 ? cn : 0)*c->v_n;
+        hold = kad*d;
+        if (dt > 0) h->D = D;
     }
     c->ct *= p->tangent_damping;
     c->load = laws->load == NAIVE_ELASTIC ? c->elastic : laws->load == NAIVE_MAGNITUDE ? fabs(c->F) : c->F;
-    if (laws->tension != NAIVE_ALLOWED) c->load = c->F = c->F > 0 ? c->F : 0;
-    if (c->load < 0) c->load = 0;
+    if (laws->tension != NAIVE_ALLOWED) c->load = c->F = fmax(c->F, 0);
+    c->load = fmax(c->load + hold, 0);
 }
-/* Rotates a tangent vector with the normal, which moved by s = n' dt, then about it by the mean twist t of the step.
-   cos t and sin t are those of the comment at dem_memory_rotate: 1 - t^2/2 and t (1 - 9 t^2/64). */
+/* Rotates a tangent vector with the normal, which moved by s = n' dt, then about it by the mean twist t of the step. */
 static naive_vec rotated(naive_vec v, naive_vec n, naive_vec s, double t) {
     const double along = dot(v, n), cosine = sqrt(1 - dot(s, s));
     v = plus(plus(v, -along, n), along/(1 + cosine), s);
     return plus(times(1 - t*t/2, v), t*(1 - 9*t*t/64), cross(n, v));
 }
 static void tangent_law(const naive_laws *laws, double dt, naive_touch *c, naive_memory *h, naive_count *count) {
-    const double limit = c->pair->friction*c->load;
+    const double slide = c->pair->friction*c->load, hold = fmax(c->pair->friction_static, c->pair->friction)*c->load;
     naive_vec spring, t, gives;        /* T_s, trial force, force that the spring gives up */
     double cut = 1;
+    int slides;
     if (laws->tangent == NAIVE_SPRING) {
         h->xi = plus(h->xi, dt*c->share, c->v_t_step);
         spring = times(-c->kt, h->xi);
@@ -152,8 +153,10 @@ static void tangent_law(const naive_laws *laws, double dt, naive_touch *c, naive
         if (dt > 0) h->xi = spring;
     }
     t = plus(spring, -c->ct, c->v_t);
-    if (size(t) > limit) cut = limit/size(t);
+    slides = size(t) > (h->slides ? slide : hold) || (h->slides && dot(spring, c->v_t) < 0);
+    if (slides && size(t) > slide) cut = slide/size(t);
     c->T = times(cut, t);
+    if (dt > 0) h->slides = slides;
     if (dt > 0 && cut < 1) {
         gives = times(1 - cut, t);
         if (laws->slider == NAIVE_PARALLEL) gives = times(c->kt*dt/(c->kt*dt + c->ct), gives);
@@ -162,16 +165,14 @@ static void tangent_law(const naive_laws *laws, double dt, naive_touch *c, naive
         else h->xi = minus(h->xi, gives);
     }
     h->kt = c->kt;
-    count->slid += cut < 1;
-    count->stuck += cut >= 1;
+    count->slid += cut < 1; count->stuck += cut >= 1;
 }
 static void rolling_law(const naive_laws *laws, double dt, naive_touch *c, naive_memory *h, naive_count *count) {
     const double mu = c->pair->rolling_friction, limit = mu*c->R*c->load;
     naive_vec t;
     if (laws->rolling == NAIVE_CONSTANT) {
         /* at rest (0.3/dt)^2 I with I = 2/5 m* R*^2, critically damped: 2 sqrt(kr I). Before the first step: none */
-        const double step = laws->dt, I = 2.0/5*c->m*c->R*c->R;
-        const double kr = dt > 0 ? 0.3/step*(0.3/step)*I : 0, cr = 2*sqrt(kr*I);
+        const double I = 2.0/5*c->m*c->R*c->R, kr = dt > 0 ? 0.3/dt*(0.3/dt)*I : 0, cr = 2*sqrt(kr*I);
         double cut = 1;
         h->roll = plus(h->roll, -kr*dt*c->share, c->w_step);
         t = plus(h->roll, -cr, c->w);
@@ -184,10 +185,9 @@ static void rolling_law(const naive_laws *laws, double dt, naive_touch *c, naive
         const double arm = mu*c->R, I = 7.0/5*c->m*c->R*c->R;
         const double kr = 2.25*c->k*arm*arm, kr_middle = 2.25*c->k_middle*arm*arm;
         t = plus(h->roll, -kr_middle*dt*c->share, c->w_step);
-        if (size(t) > limit) {
-            c->M = t = times(limit/size(t), t);
-            count->rolled++;
-        } else c->M = plus(t, -0.6*sqrt(kr*I), c->w);
+        count->rolled += size(t) > limit;
+        if (size(t) > limit) c->M = t = times(limit/size(t), t);
+        else c->M = plus(t, -0.6*sqrt(kr*I), c->w);
         if (dt > 0) h->roll = t;
     }
 }
@@ -195,24 +195,23 @@ static void rolling_law(const naive_laws *laws, double dt, naive_touch *c, naive
 /* ---- contact geometry ---- */
 /* From a to the nearest image of b. */
 static naive_vec between(const naive *n, naive_vec a, naive_vec b, int *far_image) {
-    const double *period = n->laws.period;
+    const double *p = n->laws.period;
     naive_vec r = minus(b, a);
-    const naive_vec direct = r;
-    if (period[0] > 0) r.x -= period[0]*floor(r.x/period[0] + 0.5);
-    if (period[1] > 0) r.y -= period[1]*floor(r.y/period[1] + 0.5);
-    if (period[2] > 0) r.z -= period[2]*floor(r.z/period[2] + 0.5);
-    *far_image = size(minus(r, direct)) > 0;
+    if (p[0] > 0) r.x -= p[0]*floor(r.x/p[0] + 0.5);
+    if (p[1] > 0) r.y -= p[1]*floor(r.y/p[1] + 0.5);
+    if (p[2] > 0) r.z -= p[2]*floor(r.z/p[2] + 0.5);
+    *far_image = size(minus(r, minus(b, a))) > 0;
     return r;
 }
 /* Body i against body j or, if j >= NAIVE_BODIES, plane j - NAIVE_BODIES. dt 0: forces alone, no change of history */
 static void touch(naive *n, int i, int j, double dt) {
-    static const naive_vec zero = {0, 0, 0};
+    const naive_vec zero = vec(0, 0, 0);
     naive_body *a = &n->body[i], rest = n->body[i], *b = j < NAIVE_BODIES ? &n->body[j] : &rest;
     naive_memory *h = &n->memory[i][j];
     naive_touch c;
-    double la, lb;
-    int far_image = 0, other;
-    naive_vec arm, arm_half, D, turn, middle;
+    double la, lb, twist;
+    int far_image = 0, began = !h->touches;
+    naive_vec D, turn = zero, middle;
     c.T = c.M = zero;
     if (j < NAIVE_BODIES) {
         const naive_vec r = between(n, a->x, b->x, &far_image);
@@ -223,66 +222,58 @@ static void touch(naive *n, int i, int j, double dt) {
         lb = L - la;
         c.R = 1/(1/a->R + 1/b->R);
         c.m = 1/((a->fixed ? 0 : 1/a->m) + (b->fixed ? 0 : 1/b->m));     /* fixed: infinite mass, as a wall */
-        other = b->material;
     } else {
         const naive_plane *plane = &n->plane[j - NAIVE_BODIES];
         c.n = times(-1, plane->normal);
         c.d = a->R - dot(minus(a->x, plane->point), plane->normal);
-        la = a->R;
+        la = c.R = a->R;
         lb = 0;
-        c.R = a->R;
         c.m = a->m;
-        other = plane->material;
+        rest.material = plane->material;
         rest.v = rest.w = rest.v_half = rest.w_half = zero;
     }
-    c.pair = &n->pair[a->material][other];
-    c.a = &n->material[a->material];
-    c.b = &n->material[other];
-    if (c.d > 0) {
-        const int began = !h->touches;
-        c.v_n = dot(minus(a->v, b->v), c.n);
-        arm = plus(times(la, a->w), lb, b->w);
-        arm_half = plus(times(la, a->w_half), lb, b->w_half);
-        c.v_t = plus(across(minus(a->v, b->v), c.n), 1, cross(arm, c.n));
-        D = minus(a->v_half, b->v_half);
-        turn = j < NAIVE_BODIES ? times(-1/(la + lb), across(D, c.n)) : zero;
-        middle = plus(c.n, -dt/2, turn);
-        c.v_t_step = across(plus(across(D, middle), 1, cross(arm_half, middle)), c.n);
-        c.w = across(minus(a->w, b->w), c.n);
-        c.w_step = across(minus(a->w_half, b->w_half), c.n);
-        c.twist = dot(plus(a->w_half, 1, b->w_half), c.n)/2;
-        c.share = c.v_n*dt > c.d ? c.d/(c.v_n*dt) : 1;
-        c.middle = c.v_n*dt > c.d ? c.d/2 : c.d - c.v_n*dt/2;
-        if (began) {
-            h->xi = h->roll = zero;
-            h->kt = 0;
-        } else if (dt > 0) {
-            h->xi = rotated(h->xi, c.n, times(dt, turn), c.twist*dt);
-            h->roll = rotated(h->roll, c.n, times(dt, turn), c.twist*dt);
-        }
-        normal_law(&n->laws, &c);
-        if (n->laws.tangent != NAIVE_SMOOTH) tangent_law(&n->laws, dt, &c, h, &n->count);
-        if (n->laws.rolling != NAIVE_FREE) rolling_law(&n->laws, dt, &c, h, &n->count);
-        a->force = plus(plus(a->force, -c.F, c.n), 1, c.T);
-        a->torque = plus(plus(a->torque, la, cross(c.n, c.T)), 1, c.M);
-        b->force = plus(plus(b->force, c.F, c.n), -1, c.T);
-        b->torque = plus(plus(b->torque, lb, cross(c.n, c.T)), -1, c.M);
-        n->count.began += began;
-        n->count.attracted += c.F < 0;
-        n->count.across += far_image;
-        n->count.walls += j >= NAIVE_BODIES;
-    }
     h->touches = c.d > 0;
-    h->d = c.d;
+    if (c.d <= 0) return;
+    c.pair = &n->pair[a->material][b->material];
+    c.a = &n->material[a->material]; c.b = &n->material[b->material];
+    /* dashpots: the predicted velocities */
+    c.v_n = dot(minus(a->v, b->v), c.n);
+    c.v_t = plus(across(minus(a->v, b->v), c.n), 1, cross(plus(times(la, a->w), lb, b->w), c.n));
+    c.w = across(minus(a->w, b->w), c.n);
+    /* springs: the displacement of the step */
+    D = minus(a->v_half, b->v_half);
+    if (j < NAIVE_BODIES) turn = times(-1/(la + lb), across(D, c.n));    /* n' */
+    middle = plus(c.n, -dt/2, turn);
+    c.v_t_step = plus(across(D, middle), 1, cross(plus(times(la, a->w_half), lb, b->w_half), middle));
+    c.v_t_step = across(c.v_t_step, c.n);
+    c.w_step = across(minus(a->w_half, b->w_half), c.n);
+    c.share = c.v_n*dt > c.d ? c.d/(c.v_n*dt) : 1;
+    c.middle = c.v_n*dt > c.d ? c.d/2 : c.d - c.v_n*dt/2;
+    if (began) {
+        h->xi = h->roll = zero;
+        h->kt = h->D = h->slides = 0;
+    } else if (dt > 0) {
+        twist = dot(plus(a->w_half, 1, b->w_half), c.n)/2;               /* mean spin about the normal */
+        h->xi = rotated(h->xi, c.n, times(dt, turn), twist*dt);
+        h->roll = rotated(h->roll, c.n, times(dt, turn), twist*dt);
+    }
+    normal_law(&n->laws, dt, &c, h);
+    if (n->laws.tangent != NAIVE_SMOOTH) tangent_law(&n->laws, dt, &c, h, &n->count);
+    if (n->laws.rolling != NAIVE_FREE) rolling_law(&n->laws, dt, &c, h, &n->count);
+    a->force = plus(plus(a->force, -c.F, c.n), 1, c.T);
+    b->force = plus(plus(b->force, c.F, c.n), -1, c.T);
+    a->torque = plus(plus(a->torque, la, cross(c.n, c.T)), 1, c.M);
+    b->torque = plus(plus(b->torque, lb, cross(c.n, c.T)), -1, c.M);
+    n->count.began += began; n->count.attracted += c.F < 0;
+    n->count.across += far_image; n->count.walls += j >= NAIVE_BODIES;
 }
 static void forces(naive *n, double dt) {
     int i, j;
     for (i = 0; i < n->bodies; i++) n->body[i].force = n->body[i].torque = vec(0, 0, 0);
     for (i = 0; i < n->bodies; i++) {
-        for (j = i + 1; j < n->bodies; j++)
-            if (!n->body[i].fixed || !n->body[j].fixed) touch(n, i, j, dt);
-        for (j = 0; j < n->planes; j++)
-            if (!n->body[i].fixed) touch(n, i, NAIVE_BODIES + j, dt);
+        const int still = n->body[i].fixed;                    /* nothing acts between two that cannot move */
+        for (j = i + 1; j < n->bodies; j++) if (!still || !n->body[j].fixed) touch(n, i, j, dt);
+        for (j = 0; j < n->planes; j++) if (!still) touch(n, i, NAIVE_BODIES + j, dt);
     }
 }
 
@@ -332,32 +323,24 @@ void naive_pair_set(naive *n, int a, int b, naive_pair pair) { n->pair[a][b] = n
 int naive_sphere_add(naive *n, int material, double radius, naive_vec x, naive_vec v, naive_vec spin, int fixed) {
     naive_body *b = &n->body[n->bodies];
     if (n->bodies == NAIVE_BODIES) return -1;
-    b->material = material;
-    b->fixed = fixed;
-    b->R = radius;
+    b->material = material; b->fixed = fixed; b->R = radius;
     b->m = 4.0/3*naive_pi*radius*radius*radius*n->material[material].density;
     b->I = 2.0/5*b->m*radius*radius;
     b->x = x;
-    b->v = fixed ? vec(0, 0, 0) : v;
-    b->w = fixed ? vec(0, 0, 0) : spin;
+    if (!fixed) { b->v = v; b->w = spin; }
     return n->bodies++;
 }
 int naive_plane_add(naive *n, int material, naive_vec point, naive_vec normal) {
+    const naive_plane plane = {material, point, times(1/size(normal), normal)};
     if (n->planes == NAIVE_PLANES) return -1;
-    n->plane[n->planes].material = material;
-    n->plane[n->planes].point = point;
-    n->plane[n->planes].normal = times(1/size(normal), normal);
+    n->plane[n->planes] = plane;
     return n->planes++;
 }
 naive_state naive_get(const naive *n, int body) {
     const naive_body *b = &n->body[body];
     naive_state s;
-    s.x = b->x;
-    s.v = b->v;
-    s.spin = b->w;
-    s.force = b->force;
-    s.torque = b->torque;
-    s.mass = b->m;
+    s.x = b->x; s.v = b->v; s.spin = b->w;
+    s.force = b->force; s.torque = b->torque; s.mass = b->m;
     return s;
 }
 naive_count naive_counts(const naive *n) { return n->count; }

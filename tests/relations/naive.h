@@ -1,13 +1,13 @@
 /* naive.h - a naive reference simulator of spheres and planes, written from docs/theory.md alone.
 
-   Relations between two runs of dem.h cannot see an error that both have. A scene that runs here and in dem.h shows
-   it: the two agree to rounding. naive.c shares no code with dem.h and was written without its source. It has no
-   neighbour lists: every step tests every pair. All quantities are in SI units. */
+   Relations between two runs of dem.h cannot show an error that both have. A scene that runs here and in dem.h does:
+   the two agree to rounding. naive.c was written from docs/theory.md and the public comments of dem.h, without its
+   source. Every step tests every pair. All quantities are in SI units. */
 #ifndef NAIVE_H
 #define NAIVE_H
 
 enum { NAIVE_BODIES = 64, NAIVE_PLANES = 8, NAIVE_MATERIALS = 8 };      /* largest numbers */
-enum { NAIVE_HERTZ, NAIVE_LINEAR };                                     /* normal laws */
+enum { NAIVE_HERTZ, NAIVE_LINEAR, NAIVE_HYSTERETIC };                   /* normal laws */
 enum { NAIVE_ALLOWED, NAIVE_CLIPPED, NAIVE_COMPENSATED };               /* may the dashpot attract? */
 enum { NAIVE_SMOOTH, NAIVE_SPRING, NAIVE_MINDLIN, NAIVE_RESCALED };     /* friction: none; [CS79]; [DIR05]; [THO13] */
 enum { NAIVE_PARALLEL, NAIVE_SLIDER_SPRING, NAIVE_REMAINDER };          /* what the spring gives up in a slide */
@@ -24,13 +24,14 @@ typedef struct naive_laws {
 } naive_laws;
 typedef struct naive_material {
     double density, young, poisson;    /* kg/m3, Pa */
-    double restitution, friction, rolling_friction;
-    double stiffness, ratio;           /* N/m, kn of the linear law; kt/kn; 0: derived */
+    double restitution, friction, friction_static, rolling_friction;   /* static 0: equal to friction */
+    double stiffness, ratio;           /* N/m, kn of the linear and hysteretic law; kt/kn; 0: derived */
+    double adhesion;                   /* N/m, kad of the hysteretic law */
 } naive_material;
 typedef struct naive_pair {            /* of two materials; mixed from them unless naive_pair_set is called */
-    double restitution, friction, rolling_friction;
-    double stiffness, ratio;           /* stiffness 0: from E* and the impact speed */
-    double normal_damping;             /* N s/m, linear law; 0: from the restitution */
+    double restitution, friction, friction_static, rolling_friction;
+    double stiffness, ratio, adhesion; /* stiffness 0: from E* and the impact speed */
+    double normal_damping;             /* N s/m; 0: from the restitution (linear) or none (hysteretic) */
     double tangent_damping;            /* factor on ct */
 } naive_pair;
 typedef struct naive_state { naive_vec x, v, spin, force, torque; double mass; } naive_state;   /* without gravity */
