@@ -247,6 +247,7 @@ SMALL_O := $(patsubst %/search.o,%/small_search.o,$(patsubst %/file.o,%/small_fi
 tests/refused.h: tests/refused.awk dem.h
 	awk -f tests/refused.awk dem.h > $@
 build/obj/test_refused.o: tests/refused.h
+build/obj/test_naive.o: $(wildcard tests/relations/naive.*)
 OPEN = -include build/rooms/private.h
 build/obj/test_own_law.o: OPEN =# compiles a law into dem.h
 define TEST
