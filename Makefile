@@ -37,7 +37,7 @@ hash := \#
 HAVE_PYTHON := $(if $(filter python-check,$(MAKECMDGOALS)),$(shell command -v $(PYTHON)))
 
 # ---- options that the compiler knows; tested only if something is to be compiled ----
-ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check fuzz docs options python,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check coverage fuzz docs options python,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp build/rooms build/obj)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -61,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install python python-check rooms test hard law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help all run new install python python-check rooms test hard coverage mutants law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## print this list
@@ -95,6 +95,9 @@ test: $(TESTS) ## build and run all tests; FILTER=words: only those whose names 
 
 hard: $(HARD) build/test_facets build/test_sieve build/test_bonds ## run the hard cases in their long form, over an hour, and count cases and impacts; FILTER=words as in test
 	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $^ > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
+
+coverage: ## count lines and branches of src/ that the tests execute, by gcov; OF=core, FILTER=words as in test; PROGRAMS=test_maths: only these
+	@FILTER="$(FILTER)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" JOBS=$(JOBS) sh tests/coverage.sh
 
 law: $(if $(LAW),build/dem.o,build/exam) ## LAW=path/to/my_law.h: examine a contact law and draw its curves on a page; without LAW the built-in laws
 	@mkdir -p build/out/exam
