@@ -99,6 +99,10 @@ hard: $(HARD) build/test_facets build/test_sieve build/test_bonds ## run the har
 coverage: ## count lines and branches of src/ that the tests execute, by gcov; OF=core, FILTER=words as in test; PROGRAMS=test_maths: only these
 	@FILTER="$(FILTER)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" JOBS=$(JOBS) sh tests/coverage.sh
 
+mutants: ## N=200 SEED=1: make small errors in src/, one after another, and list those that no test notices; OF=core, PROGRAMS=... as in coverage
+	@N="$(N)" SEED="$(SEED)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" JOBS=$(if $(filter file,$(origin JOBS)),1,$(JOBS)) \
+	    CC="$(CC)" CFLAGS="$(CFLAGS)" OMP="$(OMP)" sh tests/mutants.sh
+
 law: $(if $(LAW),build/dem.o,build/exam) ## LAW=path/to/my_law.h: examine a contact law and draw its curves on a page; without LAW the built-in laws
 	@mkdir -p build/out/exam
 	@if [ -n "$(LAW)" ]; then $(COMPILE) -DLAW_FILE='"$(abspath $(LAW))"' examples/exam.c build/dem.o -o build/law $(LINK) && build/law; \
