@@ -4949,8 +4949,8 @@ typedef struct demi_stages {
        next try keeps them, because the counts behind the choice may be lost */
     int skin_chosen, near_chosen;
 } demi_stages;
-/* Wall candidates of a body: first .. end - 1, end 0 if there are none. gap: m, to the nearest sheet
-   among them, or DEMI_ONLY_SHEET; negative if it is not known. */
+/* Wall candidates of a body: first .. end - 1, end 0 if there are none. gap: m, to the nearest
+   sheet among them, or DEMI_ONLY_SHEET; negative if it is not known. */
 typedef struct demi_walled { int32_t first, end; dem_real gap; } demi_walled;
 typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are valid */
     double skin, gone, walls_gone; /* m: skin; largest displacement of a body and of a wall point
@@ -16237,8 +16237,8 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     }
     return sides == corners;
 }
-/* True if a sheet among the candidates of `body` that may be nearer to it than `gap` (m) crosses the
-   line from its centre to that of `other`, which must not ignore it. to: m, to the image of the
+/* True if a sheet among the candidates of `body` that may be nearer to it than `gap` (m) crosses
+   the line from its centre to that of `other`, which must not ignore it. to: m, to the image of the
    other. */
 static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 to, dem_real gap) {
     const int material = w->bodies.material[other] - 1;
@@ -19049,7 +19049,8 @@ static void demi_pressure_beyond(const demi_solid *a, demi_d3 n, demi_pressure *
 }
 /* Stretches a prism to 1.5 times its height; its centre is at z = 0. Polygons of a planar world are
    prisms. If two end at the same height, there is a volume in which both u are those of the ends
-   and equal, so S, force and energy are undefined. One of the two is therefore stretched. */
+   and equal, so S, force and energy are undefined. One of the two is therefore stretched
+   (demi_prisms_press). */
 static void demi_solid_stretch(demi_solid *s) {
     int i;
     for (i = 0; i < s->corners; i++) s->corner[i].z *= 1.5;
@@ -19071,6 +19072,20 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
     if (demi_solid_holds(b, a->centre) || demi_solid_holds(a, b->centre))
         demi_pressure_beyond(a, demi_d(0, 0, 1), s);
     return s->shared > 0 && s->sum > 0;
+}
+/* The same for two prisms: the mean of stretching the one and the other, so that it does not depend
+   on their order. */
+static int demi_prisms_press(const demi_solid *a, const demi_solid *b, demi_pressure *s) {
+    demi_solid high = *a;
+    demi_pressure other;
+    demi_solid_stretch(&high);
+    if (!demi_solids_press(&high, b, s)) return 0;
+    high = *b;
+    demi_solid_stretch(&high);
+    if (!demi_solids_press(a, &high, &other)) return 0;
+    demi_pressure_add(s, &other);
+    demi_pressure_scale(s, 0.5);
+    return 1;
 }
 /* Gauss-Legendre rules with three and four points on 0 .. 1: positions and weights. */
 static const double demi_gauss3_at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
@@ -23112,9 +23127,8 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
-    if (w->desc.planar)                         /* either one, but always the same */
-        demi_solid_stretch(w->bodies.slot[c->a] < w->bodies.slot[c->b] ? &a : &b);
-    overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &p->q, &q->q, &at)
+    overlap = (w->desc.planar ? demi_prisms_press : demi_solids_press)(&a, &b, &s) &&
+        demi_pressure_patch(&s, &p->q, &q->q, &at)
         ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;

@@ -232,9 +232,8 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
-    if (w->desc.planar)                         /* either one, but always the same */
-        demi_solid_stretch(w->bodies.slot[c->a] < w->bodies.slot[c->b] ? &a : &b);
-    overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &p->q, &q->q, &at)
+    overlap = (w->desc.planar ? demi_prisms_press : demi_solids_press)(&a, &b, &s) &&
+        demi_pressure_patch(&s, &p->q, &q->q, &at)
         ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;

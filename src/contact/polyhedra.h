@@ -253,7 +253,8 @@ static void demi_pressure_beyond(const demi_solid *a, demi_d3 n, demi_pressure *
 }
 /* Stretches a prism to 1.5 times its height; its centre is at z = 0. Polygons of a planar world are
    prisms. If two end at the same height, there is a volume in which both u are those of the ends
-   and equal, so S, force and energy are undefined. One of the two is therefore stretched. */
+   and equal, so S, force and energy are undefined. One of the two is therefore stretched
+   (demi_prisms_press). */
 static void demi_solid_stretch(demi_solid *s) {
     int i;
     for (i = 0; i < s->corners; i++) s->corner[i].z *= 1.5;
@@ -275,6 +276,20 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
     if (demi_solid_holds(b, a->centre) || demi_solid_holds(a, b->centre))
         demi_pressure_beyond(a, demi_d(0, 0, 1), s);
     return s->shared > 0 && s->sum > 0;
+}
+/* The same for two prisms: the mean of stretching the one and the other, so that it does not depend
+   on their order. */
+static int demi_prisms_press(const demi_solid *a, const demi_solid *b, demi_pressure *s) {
+    demi_solid high = *a;
+    demi_pressure other;
+    demi_solid_stretch(&high);
+    if (!demi_solids_press(&high, b, s)) return 0;
+    high = *b;
+    demi_solid_stretch(&high);
+    if (!demi_solids_press(a, &high, &other)) return 0;
+    demi_pressure_add(s, &other);
+    demi_pressure_scale(s, 0.5);
+    return 1;
 }
 /* Gauss-Legendre rules with three and four points on 0 .. 1: positions and weights. */
 static const double demi_gauss3_at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};

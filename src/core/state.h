@@ -48,8 +48,8 @@ typedef struct demi_stages {
        next try keeps them, because the counts behind the choice may be lost */
     int skin_chosen, near_chosen;
 } demi_stages;
-/* Wall candidates of a body: first .. end - 1, end 0 if there are none. gap: m, to the nearest sheet
-   among them, or DEMI_ONLY_SHEET; negative if it is not known. */
+/* Wall candidates of a body: first .. end - 1, end 0 if there are none. gap: m, to the nearest
+   sheet among them, or DEMI_ONLY_SHEET; negative if it is not known. */
 typedef struct demi_walled { int32_t first, end; dem_real gap; } demi_walled;
 typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are valid */
     double skin, gone, walls_gone; /* m: skin; largest displacement of a body and of a wall point

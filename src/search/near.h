@@ -434,8 +434,8 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     }
     return sides == corners;
 }
-/* True if a sheet among the candidates of `body` that may be nearer to it than `gap` (m) crosses the
-   line from its centre to that of `other`, which must not ignore it. to: m, to the image of the
+/* True if a sheet among the candidates of `body` that may be nearer to it than `gap` (m) crosses
+   the line from its centre to that of `other`, which must not ignore it. to: m, to the image of the
    other. */
 static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 to, dem_real gap) {
     const int material = w->bodies.material[other] - 1;

@@ -397,5 +397,33 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
+    TEST("polygons: an oblique impact with friction does not depend on which of the two was added first") {
+        dem_body_state end[2];
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_material m;
+            dem_world *w = flat(0, 0, &m, 0.5, 0.7);
+            dem_real x[12];
+            dem_shape hexagon;
+            dem_body b[2];
+            int i;
+            star(3, 0.01, 0.01, x);
+            hexagon = dem_shape_polygon_add(w, 6, x);
+            for (i = 0; i < 2; i++) {
+                const int which = k ? 1 - i : i;
+                b[which] = dem_body_add(w, m, hexagon, at(which ? 0.0195 : 0, which ? 0.003 : 0, 0),
+                                        which ? dem_quat_about(at(0, 0, 1), DEM_R(0.3)) : straight);
+            }
+            scene_move(w, b[1], at(-0.3, 0.2, 0), at(0, 0, 5));
+            CHECK_EQ(dem_world_run(w, 0.01, 0, 0), DEM_OK);
+            end[k] = scene_state(w, b[1]);
+            CHECK(end[k].velocity.x > DEM_R(-0.25));           /* they touched */
+            dem_world_destroy(w);
+        }
+        CHECK_NEAR(end[0].velocity.x, (double)end[1].velocity.x, fine ? 1e-12 : 1e-4);
+        CHECK_NEAR(end[0].velocity.y, (double)end[1].velocity.y, fine ? 1e-12 : 1e-4);
+        CHECK_NEAR(end[0].spin.z, (double)end[1].spin.z, fine ? 1e-10 : 1e-2);
+    }
+
     return test_end();
 }

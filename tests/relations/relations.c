@@ -1,0 +1,176 @@
+/* relations.c - draws scenes and checks relations that must hold (make relations). A scene is drawn from its seed, so
+   the same number is the same scene on every machine.
+
+       build/relations --scenes 600                 the scenes 1 .. 600, each with three drawn relations
+       build/relations --seed 97                    one scene with all relations
+       build/relations --seed 97 --relation slabs --print     ... and as a C program
+       build/relations --scenes 100000 --log build/relations.log     continues where the log ends
+       build/relations --scenes 600 --page docs/relations.md  also writes the table
+
+   The last line is "relations: N scenes, C checks, B broken"; the exit code is 1 if a relation is broken. */
+#include "print.h"
+#include "relate.h"
+#include <time.h>
+
+typedef struct rel_counts {
+    uint64_t last;                             /* seeds 1 .. last are done */
+    int scenes, refused, failed, still, checks, broken;
+    int relation[REL_RELATIONS][3];            /* holds, broken, skipped */
+    int pair[REL_ROWS][REL_ROWS];              /* scenes in which both acted */
+    int pair_refused[REL_ROWS][REL_ROWS];      /* scenes with both that were refused by name */
+} rel_counts;
+static rel_counts rel_all;
+
+static int rel_log_read(const char *path) {
+    FILE *file = fopen(path, "rb");
+    int ok = 1;
+    if (!file) return 1;
+    ok = fread(&rel_all, sizeof rel_all, 1, file) == 1;
+    fclose(file);
+    if (!ok) fprintf(stderr, "relations: %s was written by another version; remove it to begin again\n", path);
+    return ok;
+}
+static int rel_log_write(const char *path) {
+    char part[500];
+    FILE *file;
+    int ok;
+    snprintf(part, sizeof part, "%s.part", path);
+    file = fopen(part, "wb");
+    if (!file) return 0;
+    ok = fwrite(&rel_all, sizeof rel_all, 1, file) == 1;
+    return !fclose(file) && ok && !rename(part, path);
+}
+static void rel_features_print(const rel_scene *s) {
+    int k, n = 0;
+    printf("    ");
+    for (k = 0; k < REL_ROWS; k++) if (s->has[k]) printf("%s%s", n++ ? ", " : "", rel_features[k].name);
+    printf("\n");
+}
+static void rel_pairs(int to[REL_ROWS][REL_ROWS], const rel_scene *s, const rel_run *r) {
+    int i, k;
+    for (i = 0; i < REL_ROWS; i++)
+        for (k = 0; k < REL_ROWS; k++)
+            to[i][k] += s->has[i] && s->has[k] && (!r || (rel_acted(r, i) && rel_acted(r, k)));
+}
+/* Checks `most` drawn relations of a scene, or all if `most` is 0, or the one called `only`. Returns the number that
+   are broken. */
+static int rel_check(rel_scene *s, int most, const char *only, int print) {
+    static rel_case c;
+    int order[REL_RELATIONS], i, k, broken = 0, checked = 0;
+    const int ok = rel_open_case(&c, s);
+    rel_rng r;
+    if (!ok || !c.ran) {
+        if (!most && !only) printf("scene %llu: %s\n", (unsigned long long)s->seed, c.base.message);
+        rel_all.refused += !ok;
+        rel_all.failed += ok;
+        rel_pairs(rel_all.pair_refused, s, 0);
+        rel_close_case(&c);
+        return 0;
+    }
+    if (!(c.base.contacts + c.base.wall_contacts)) { rel_all.still++; rel_close_case(&c); return 0; }
+    rel_all.scenes++;
+    rel_pairs(rel_all.pair, s, &c.base);
+    r.s = s->seed*2 + 1;
+    for (i = 0; i < REL_RELATIONS; i++) order[i] = i;
+    for (i = REL_RELATIONS - 1; i > 0; i--) {
+        const int with = rel_below(&r, i + 1), was = order[i];
+        order[i] = order[with];
+        order[with] = was;
+    }
+    for (k = 0; k < REL_RELATIONS && (!most || checked < most); k++) {
+        const rel_relation *relation = &rel_relations[order[k]];
+        int result;
+        if (only && strcmp(only, relation->name)) continue;
+        c.rng.s = s->seed ^ 0x5bd1e995u;       /* the same choices whichever relations come before */
+        result = relation->check(&c);
+        rel_all.relation[order[k]][result]++;
+        checked += result != REL_SKIPPED;
+        rel_all.checks += result != REL_SKIPPED;
+        if (result != REL_BROKEN) continue;
+        broken++;
+        printf("BROKEN scene %llu, %s: %s\n", (unsigned long long)s->seed, relation->name, c.why);
+        rel_features_print(s);
+    }
+    if (print) rel_print(stdout, s, c.why);
+    rel_close_case(&c);
+    rel_all.broken += broken;
+    return broken;
+}
+/* ---- the page ---- */
+static void rel_page(const char *path) {
+    FILE *out = fopen(path, "w");
+    int i, k, rare = 0;
+    if (!out) { fprintf(stderr, "relations: cannot write %s\n", path); return; }
+    fprintf(out, "# Relations\n\nA program draws small scenes from rows of features and checks relations between runs that must "
+            "hold: the same bits with other numbers of threads, the same motion in rotated axes, and so on. `make relations` "
+            "runs it and writes this page. `tests/relations/` has the rows: `draw.h` the features, `relate.h` the relations.\n\n"
+            "`build/relations --seed 97` checks one scene with all relations; with `--print` it also prints the scene as a C "
+            "program. `make relations N=100000` draws more scenes, and continues where it was interrupted.\n\n"
+            "<!-- relations -->\n%d scenes were drawn and run: %d with contacts, %d without, %d that dem.h refused by name, %d that "
+            "stopped with a message. %d checks, %d broken.\n\n| relation | promise | holds | broken | does not apply |\n|---|---|---|---|---|\n",
+            rel_all.scenes + rel_all.still + rel_all.refused + rel_all.failed, rel_all.scenes, rel_all.still, rel_all.refused,
+            rel_all.failed, rel_all.checks, rel_all.broken);
+    for (i = 0; i < REL_RELATIONS; i++)
+        fprintf(out, "| %s | %s | %d | %d | %d |\n", rel_relations[i].name, rel_relations[i].promise, rel_all.relation[i][0],
+                rel_all.relation[i][1], rel_all.relation[i][2]);
+    fprintf(out, "\n## Features\n\nThe number of scenes in which a feature acted, and of the other features with which it acted in "
+            "at least 20 scenes.\n\n| feature | scenes | with |\n|---|---|---|\n");
+    for (i = 0; i < REL_ROWS; i++) {
+        int with = 0;
+        for (k = 0; k < REL_ROWS; k++) with += k != i && rel_all.pair[i][k] >= 20;
+        fprintf(out, "| %s | %d | %d |\n", rel_features[i].name, rel_all.pair[i][i], with);
+    }
+    fprintf(out, "\n## Pairs that never ran\n\nRows of one group exclude each other and are not listed.\n\n| feature | never with |\n|---|---|\n");
+    for (i = 0; i < REL_ROWS; i++) {
+        int n = 0;
+        for (k = i + 1; k < REL_ROWS; k++) {
+            if (rel_all.pair[i][k] || (rel_features[i].group && rel_features[i].group == rel_features[k].group)) continue;
+            fprintf(out, n++ ? ", %s%s" : "| %s | %s%s", n == 1 ? rel_features[i].name : rel_features[k].name,
+                    n == 1 ? rel_features[k].name : rel_all.pair_refused[i][k] ? " (refused)" : "",
+                    n == 1 && rel_all.pair_refused[i][k] ? " (refused)" : "");
+            rare++;
+        }
+        if (n) fprintf(out, " |\n");
+    }
+    fprintf(out, "<!-- end -->\n");
+    if (fclose(out)) fprintf(stderr, "relations: %s was not written in full\n", path);
+}
+
+int main(int count, char **argument) {
+    static rel_scene s;
+    uint64_t seed = 0, k, scenes = 600;
+    const char *only = 0, *log = 0, *page = 0;
+    int i, print = 0, broken = 0;
+    clock_t began = clock();
+    for (i = 1; i < count; i++) {
+        const char *value = i + 1 < count ? argument[i + 1] : "";
+        if (!strcmp(argument[i], "--print")) { print = 1; continue; }
+        if (!strcmp(argument[i], "--seed")) seed = strtoull(value, 0, 10);
+        else if (!strcmp(argument[i], "--scenes")) scenes = strtoull(value, 0, 10);
+        else if (!strcmp(argument[i], "--relation")) only = value;
+        else if (!strcmp(argument[i], "--log")) log = value;
+        else if (!strcmp(argument[i], "--page")) page = value;
+        else { fprintf(stderr, "relations: unknown option %s; the first lines of relations.c list them\n", argument[i]); return 2; }
+        i++;
+    }
+    if (seed) {
+        rel_draw_scene(&s, seed);
+        rel_features_print(&s);
+        broken = rel_check(&s, 0, only, print);
+        printf("relations: scene %llu, %d checks, %d broken\n", (unsigned long long)seed, rel_all.checks, broken);
+        return broken > 0;
+    }
+    if (log && !rel_log_read(log)) return 2;
+    for (k = rel_all.last + 1; k <= scenes; k++) {
+        if (rel_draw_scene(&s, k)) broken += rel_check(&s, only ? 0 : 3, only, 0);
+        rel_all.last = k;
+        if (k%1000) continue;
+        fprintf(stderr, "%llu scenes, %d checks, %d broken, %.0f s\n", (unsigned long long)k, rel_all.checks, rel_all.broken,
+                (double)(clock() - began)/CLOCKS_PER_SEC);
+        if (log) rel_log_write(log);
+    }
+    if (log) rel_log_write(log);
+    if (page) rel_page(page);
+    printf("relations: %llu scenes, %d checks, %d broken\n", (unsigned long long)scenes, rel_all.checks, rel_all.broken);
+    return rel_all.broken > 0;
+}
