@@ -61,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install python python-check rooms test hard coverage mutants law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help all run new install python python-check rooms test hard coverage mutants relations law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## print this list
@@ -102,6 +102,11 @@ coverage: ## count lines and branches of src/ that the tests execute, by gcov; O
 mutants: ## N=200 SEED=1: make small errors in src/, one after another, and list those that no test notices; OF=core, PROGRAMS=... as in coverage
 	@N="$(N)" SEED="$(SEED)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" JOBS=$(if $(filter file,$(origin JOBS)),1,$(JOBS)) \
 	    CC="$(CC)" CFLAGS="$(CFLAGS)" OMP="$(OMP)" sh tests/mutants.sh
+
+relations: build/relations ## draw N (2000) scenes from rows of features and check relations between runs; SEED=97: all relations of one scene; N=100000: continues where it was interrupted
+	@mkdir -p build/tmp build/out
+	@if [ "$(SEED)" ]; then build/relations --seed $(SEED) --print; \
+	else build/relations --scenes $(or $(N),2000) $(if $(N),--log build/relations_$(N).log) --page build/out/relations.md; fi
 
 law: $(if $(LAW),build/dem.o,build/exam) ## LAW=path/to/my_law.h: examine a contact law and draw its curves on a page; without LAW the built-in laws
 	@mkdir -p build/out/exam
@@ -271,6 +276,8 @@ build/write_files: tests/write_files.c
 build/write_replays: tests/write_replays.c
 $(BENCHES): dem.h build/flags
 	$(COMPILE) -o $@ $(filter %/$(@F).c,$^) $(LINK)
+build/relations: tests/relations/relations.c $(wildcard tests/relations/*.h) build/dem.o
+	$(COMPILE) -o $@ $< build/dem.o $(LINK)
 build/dem.o: dem.c dem.h build/flags
 	$(COMPILE) $(OMP) -c -o $@ dem.c
 $(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_replays: build/dem.o

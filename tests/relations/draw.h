@@ -11,7 +11,7 @@ typedef struct rel_draw {
     rel_rng *r;
     int feature;                               /* the row being added */
     double R, a, h;                            /* m: radius; half width and height of the container */
-    int planar, impulses, periodic, round, moved;
+    int planar, impulses, periodic, round, bumps, moved;
     int material[3], materials;
     int shape[12]; double reach[12]; int shapes;             /* op, -1: sphere; bounding radius, m */
     int wall[16], walls, container;            /* ops; how many of them belong to the container */
@@ -317,7 +317,7 @@ static int rel_mesh_bumpy(rel_draw *d) {
     if (d->planar || d->periodic) return 0;
     rel_floor_mesh(d, 1.5*d->a, 2 + rel_any(d, 3), 0.3*d->R);
     rel_sides(d);
-    return 1;
+    return d->bumps = 1;
 }
 static int rel_profile(rel_draw *d) {
     double x[12], s[10];
@@ -337,7 +337,7 @@ static int rel_profile(rel_draw *d) {
     rel_wall(d, p);
     if (!d->planar) rel_plane_at(d, 0, 0, 0, 0, 0, 1);
     rel_sides(d);
-    return 1;
+    return d->bumps = 1;
 }
 static int rel_cylinder(rel_draw *d) {
     rel_op *c;
@@ -446,13 +446,14 @@ static void rel_one_body(rel_draw *d, double x, double y, double z, double speed
 }
 static int rel_fill(rel_draw *d) {
     const int most = 2 + rel_any(d, rel_chance(d->r, 0.3) ? 40 : 12);
-    const double speed = rel_vary(d, 0.05, 0.5);
-    double reach = 0, step, top = d->planar ? d->h : d->h, x, y, z;
+    const double speed = rel_vary(d, 0.1, 0.8);
+    double reach = 0, step, low, x, y, z;
     int i;
     for (i = 0; i < d->shapes; i++) reach = d->reach[i] > reach ? d->reach[i] : reach;
-    step = 2.05*reach;
-    for (z = reach*1.02; z < (d->planar ? reach*1.03 : top - reach) && d->bodies < most; z += step)
-        for (y = d->planar ? reach*1.02 : -d->a + 1.02*reach; y < (d->planar ? d->h - reach : d->a - reach) && d->bodies < most; y += step)
+    step = 2.02*reach;
+    low = reach*1.02 + (d->bumps ? 0.31*d->R : 0);
+    for (z = low; z < (d->planar ? low*1.01 : d->h - reach) && d->bodies < most; z += step)
+        for (y = d->planar ? low : -d->a + 1.02*reach; y < (d->planar ? d->h - reach : d->a - reach) && d->bodies < most; y += step)
             for (x = -d->a + 1.02*reach; x <= d->a - 1.02*reach && d->bodies < most; x += step) {
                 const double v = d->planar ? y - d->h/2 : y, room = (d->planar && d->round ? d->h/2 : d->a) - 1.1*reach;
                 if (d->round && x*x + v*v > room*room) continue;

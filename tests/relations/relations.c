@@ -99,7 +99,7 @@ static int rel_check(rel_scene *s, int most, const char *only, int print) {
 /* ---- the page ---- */
 static void rel_page(const char *path) {
     FILE *out = fopen(path, "w");
-    int i, k, rare = 0;
+    int i, k;
     if (!out) { fprintf(stderr, "relations: cannot write %s\n", path); return; }
     fprintf(out, "# Relations\n\nA program draws small scenes from rows of features and checks relations between runs that must "
             "hold: the same bits with other numbers of threads, the same motion in rotated axes, and so on. `make relations` "
@@ -125,10 +125,9 @@ static void rel_page(const char *path) {
         int n = 0;
         for (k = i + 1; k < REL_ROWS; k++) {
             if (rel_all.pair[i][k] || (rel_features[i].group && rel_features[i].group == rel_features[k].group)) continue;
-            fprintf(out, n++ ? ", %s%s" : "| %s | %s%s", n == 1 ? rel_features[i].name : rel_features[k].name,
-                    n == 1 ? rel_features[k].name : rel_all.pair_refused[i][k] ? " (refused)" : "",
-                    n == 1 && rel_all.pair_refused[i][k] ? " (refused)" : "");
-            rare++;
+            if (n++) fprintf(out, ", ");
+            else fprintf(out, "| %s | ", rel_features[i].name);
+            fprintf(out, "%s%s", rel_features[k].name, rel_all.pair_refused[i][k] ? " (refused)" : "");
         }
         if (n) fprintf(out, " |\n");
     }
