@@ -1,43 +1,74 @@
-/* print.h - a scene as a C program of its own: `rel_print` writes everything up to main's last lines, which the relation
-   adds. A program makes the scene in a function `scene` that takes what differs between the two runs. */
+/* print.h - the calls of a scene as C text. program.h makes a program of them.
+
+   The text of a call is written to a page: there are two, so that the call of a scene can be compared with the call
+   of its image. */
 #ifndef REL_PRINT_H
 #define REL_PRINT_H
 #include "run.h"
 
-static void rel_number(FILE *out, double x) {
-    char text[40];
+static char rel_page[2][1 << 17];
+static int rel_side;                           /* the page that is written */
+static size_t rel_written;
+static void rel_say(const char *format, ...) {
+    const size_t room = sizeof *rel_page - rel_written;
+    va_list list;
+    int n;
+    va_start(list, format);
+    n = vsnprintf(rel_page[rel_side] + rel_written, room, format, list);
+    va_end(list);
+    if (n < 0 || (size_t)n >= room) { fprintf(stderr, "relations: a call is too long to print\n"); exit(3); }
+    rel_written += (size_t)n;
+}
+static void rel_new_page(int side) {
+    rel_side = side;
+    rel_written = 0;
+    rel_page[side][0] = 0;
+}
+/* A number with as few digits as keep its value, without leading zeros of the exponent. */
+static const char *rel_number(double x) {
+    static char text[40];
+    char *e;
     int digits;
-    for (digits = 3; digits < 18; digits++) {              /* as few as keep the value */
+    for (digits = 1; digits < 18; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, x);
         if (!(strtod(text, 0) < x || strtod(text, 0) > x)) break;
     }
-    fputs(text, out);
+    e = strchr(text, 'e');
+    if (e && fabs(x) >= 1 && fabs(x) < 1e6 && x == floor(x)) snprintf(text, sizeof text, "%.0f", x);
+    else if (e) {
+        e += e[1] == '-' ? 2 : 1;
+        while ((*e == '0' || *e == '+') && e[1]) memmove(e, e + 1, strlen(e));
+    }
+    return text;
 }
-static void rel_name(FILE *out, const rel_scene *s, int op) {
-    if (op < 0) { fputs("none", out); return; }
-    if (s->op[op].call == REL_A_BODY) fprintf(out, "b[%d]", op);
-    else fprintf(out, "%s%d", rel_calls[s->op[op].call].makes, op);
+/* The name of what an op makes: bodies have numbers of their own. */
+static void rel_name(const rel_scene *s, int op) {
+    int i, n = 0;
+    for (i = 0; i < op; i++) n += s->op[i].call == REL_A_BODY;
+    if (op < 0 || !*rel_calls[s->op[op].call].makes) rel_say("none");
+    else if (s->op[op].call == REL_A_BODY) rel_say("b[%d]", n);
+    else rel_say("%s%d", rel_calls[s->op[op].call].makes, op);
 }
 /* The value of a field as an expression. */
-static void rel_value(FILE *out, const rel_scene *s, const rel_op *op, const rel_field *f, const rel_set *v) {
+static void rel_value(const rel_scene *s, const rel_field *f, const rel_set *v) {
+    const int list = f->type == REL_REALS || f->type == REL_INTS || f->type == REL_REF_ARRAY;
+    const int n = f->type == REL_VEC ? 3 : f->type == REL_QUAT ? 4 : f->type == REL_BOX ? 6 : list ? v->count : 1;
     int k;
     switch (f->type) {
-    case REL_INT: case REL_INT3: fprintf(out, "%d", (int)v->v[0]); break;
-    case REL_REAL: case REL_DOUBLE: rel_number(out, v->v[0]); break;
-    case REL_VEC: case REL_QUAT: case REL_BOX: {
-        const int n = f->type == REL_VEC ? 3 : f->type == REL_QUAT ? 4 : 6;
-        fputs(n == 3 ? "dem_vec3_make(" : n == 4 ? "dem_quat_make(" : "dem_box_make(", out);
-        for (k = 0; k < n; k++) { if (k) fputs(", ", out); rel_number(out, v->v[k]); }
-        fputs(")", out);
-        break;
-    }
-    case REL_REF: case REL_BODY: rel_name(out, s, (int)v->v[0]); break;
-    case REL_REALS: case REL_INTS:
-        fprintf(out, "%s_%d", f->name, (int)(op - s->op));         /* rel_lists declares it */
-        break;
-    case REL_CODE: fputs(rel_codes[(int)v->v[0]].name, out); break;
-    case REL_TEXT: fprintf(out, "\"%s\"", rel_texts[(int)v->v[0]]); break;
-    default: break;
+    case REL_INT: rel_say("%d", (int)v->v[0]); break;
+    case REL_REF: case REL_BODY: rel_name(s, (int)v->v[0]); break;
+    case REL_CODE: rel_say("%s", rel_codes[(int)v->v[0]].name); break;
+    case REL_TEXT: rel_say("\"%s\"", rel_texts[(int)v->v[0]]); break;
+    case REL_REAL: case REL_DOUBLE: rel_say("%s", rel_number(v->v[0])); break;
+    default:
+        rel_say(f->type == REL_VEC ? "V(" : f->type == REL_QUAT ? "dem_quat_make(" : f->type == REL_BOX ? "dem_box_make(" :
+                f->type == REL_REALS ? "(dem_real[]){" : f->type == REL_INTS ? "(int32_t[]){" : "(dem_shape[]){");
+        for (k = 0; k < n; k++) {
+            if (k) rel_say(", ");
+            if (f->type == REL_REF_ARRAY) rel_name(s, (int)s->pool[v->at + k]);
+            else rel_say("%s", rel_number(list ? s->pool[v->at + k] : v->v[k]));
+        }
+        rel_say(list ? "}" : ")");
     }
 }
 static const rel_set *rel_given(const rel_op *op, const char *name, size_t length) {
@@ -49,172 +80,166 @@ static const rel_set *rel_given(const rel_op *op, const char *name, size_t lengt
     }
     return 0;
 }
-/* Arrays for the lists of an op. */
-static void rel_lists(FILE *out, const rel_scene *s, const rel_op *op) {
-    const rel_call *c = &rel_calls[op->call];
-    int i, k;
-    for (i = 0; i < op->count; i++) {
-        const rel_set *v = &op->set[i];
-        const rel_field *f = &c->fields[v->field];
-        const int refs = f->type == REL_REF_ARRAY && strncmp(f->name, "d.", 2);
-        if (f->type != REL_REALS && f->type != REL_INTS && !refs) continue;
-        fprintf(out, "    %s %s_%d[] = {", f->type == REL_REALS ? "dem_real" : refs ? "dem_shape" : "int32_t", f->name,
-                (int)(op - s->op));
+/* The assignment of a field of a desc. */
+static void rel_assign(const rel_scene *s, const rel_field *f, const rel_set *v) {
+    int k;
+    if (f->type == REL_INT3) for (k = 0; k < 3; k++) rel_say("%s[%d] = %d; ", f->name, k, (int)v->v[k]);
+    else if (f->type == REL_REAL_ARRAY || f->type == REL_DOUBLE_ARRAY || f->type == REL_REF_ARRAY)
         for (k = 0; k < v->count; k++) {
-            if (k) fputs(", ", out);
-            if (refs) rel_name(out, s, (int)s->pool[v->at + k]);
-            else rel_number(out, s->pool[v->at + k]);
+            rel_say("%s[%d] = ", f->name, k);
+            if (f->type == REL_REF_ARRAY) rel_name(s, (int)s->pool[v->at + k]);
+            else rel_say("%s", rel_number(s->pool[v->at + k]));
+            rel_say("; ");
         }
-        fputs("};\n", out);
+    else {
+        rel_say("%s = ", f->name);
+        rel_value(s, f, v);
+        rel_say("; ");
     }
 }
-static void rel_desc(FILE *out, const rel_scene *s, const rel_op *op, const char *indent) {
+static void rel_desc(const rel_scene *s, const rel_op *op) {
     const rel_call *c = &rel_calls[op->call];
-    int i, k;
-    if (!*c->desc) return;
-    fprintf(out, "%s{ %s d%s%s;", indent, c->desc, *c->zero == '{' ? "" : " = ", *c->zero == '{' ? "" : c->zero);
+    int i;
     if (op->call == REL_PAIR) {
-        fputs(" dem_pair_get(w, ", out);
-        rel_name(out, s, (int)rel_given(op, "a", 1)->v[0]);
-        fputs(", ", out);
-        rel_name(out, s, (int)rel_given(op, "b", 1)->v[0]);
-        fputs(", &d);", out);
-    }
-    for (i = 0; i < op->count; i++) {
-        const rel_set *v = &op->set[i];
-        const rel_field *f = &c->fields[v->field];
-        if (strncmp(f->name, "d.", 2)) continue;
-        if (f->type == REL_INT3)
-            for (k = 0; k < 3; k++) fprintf(out, " %s[%d] = %d;", f->name, k, (int)v->v[k]);
-        else if (f->type == REL_REAL_ARRAY || f->type == REL_DOUBLE_ARRAY || f->type == REL_REF_ARRAY)
-            for (k = 0; k < v->count; k++) {
-                fprintf(out, " %s[%d] = ", f->name, k);
-                if (f->type == REL_REF_ARRAY) rel_name(out, s, (int)s->pool[v->at + k]);
-                else rel_number(out, s->pool[v->at + k]);
-                fputs(";", out);
-            }
-        else {
-            fprintf(out, " %s = ", f->name);
-            if (f->type == REL_INT && f->at < sizeof(rel_a_world)) fputs("", out);
-            rel_value(out, s, op, f, v);
-            fputs(";", out);
-        }
-    }
-    fputs(" ", out);
+        rel_say("{ dem_pair d; dem_pair_get(w, ");
+        rel_name(s, (int)rel_given(op, "a", 1)->v[0]);
+        rel_say(", ");
+        rel_name(s, (int)rel_given(op, "b", 1)->v[0]);
+        rel_say(", &d); ");
+    } else rel_say("{ %s d = %s; ", c->desc, c->zero);
+    for (i = 0; i < op->count; i++)
+        if (!strncmp(c->fields[op->set[i].field].name, "d.", 2)) rel_assign(s, &c->fields[op->set[i].field], &op->set[i]);
 }
 /* The text of a call: $name is a value, #name the length of a list. */
-static void rel_text(FILE *out, const rel_scene *s, const rel_op *op) {
+static void rel_text(const rel_scene *s, const rel_op *op) {
     const rel_call *c = &rel_calls[op->call];
     const char *p;
     for (p = c->text; *p; p++) {
         size_t n = 0;
         const rel_set *v;
+        rel_set zero;
         int i;
-        if (*p != '$' && *p != '#') { fputc(*p, out); continue; }
+        if (*p != '$' && *p != '#') { rel_say("%c", *p); continue; }
         while ((p[n + 1] >= 'a' && p[n + 1] <= 'z') || p[n + 1] == '_' || p[n + 1] == '.') n++;
         v = rel_given(op, p + 1, n);
         for (i = 0; i < c->field_count; i++)
             if (strlen(c->fields[i].name) == n && !strncmp(c->fields[i].name, p + 1, n)) break;
-        if (*p == '#') fprintf(out, "%d", v ? v->count : 0);
-        else if (v && c->fields[i].type == REL_REF_ARRAY) fprintf(out, "%s_%d", c->fields[i].name, (int)(op - s->op));
-        else if (v) rel_value(out, s, op, &c->fields[i], v);
-        else {                                             /* its default */
-            rel_set zero;
-            memset(&zero, 0, sizeof zero);
-            if (c->defaults && c->fields[i].type == REL_INT) zero.v[0] = *(const int *)((const char *)c->defaults + c->fields[i].at);
-            if (c->defaults && c->fields[i].type == REL_REAL) zero.v[0] = (double)*(const dem_real *)((const char *)c->defaults + c->fields[i].at);
-            rel_value(out, s, op, &c->fields[i], &zero);
+        if (*p == '#') rel_say("%d", v ? v->count : 0);
+        else {
+            memset(&zero, 0, sizeof zero);                 /* a field that is not set has its default */
+            if (!v && c->defaults) {
+                const char *at = (const char *)c->defaults + c->fields[i].at;
+                int k;
+                if (c->fields[i].type == REL_INT) zero.v[0] = *(const int *)at;
+                for (k = 0; k < (c->fields[i].type == REL_VEC ? 3 : c->fields[i].type == REL_REAL); k++)
+                    zero.v[k] = (double)((const dem_real *)at)[k];
+            }
+            rel_value(s, &c->fields[i], v ? v : &zero);
         }
         p += n;
     }
 }
-static void rel_call_print(FILE *out, const rel_scene *s, int at, const char *indent) {
+static void rel_body_text(const rel_scene *s, const rel_op *op) {
+    static const char *const names[] = {"material", "shape", "radius", "position", "velocity", "spin", "orientation"};
+    const int shaped = rel_given(op, "shape", 5) != 0;
+    const rel_set *scale = rel_given(op, "scale", 5);
+    int k;
+    rel_say(shaped ? "body(w" : "ball(w");
+    for (k = 0; k < (shaped ? 7 : 6); k++) {
+        const rel_set *v = rel_given(op, names[k], strlen(names[k]));
+        if (k == (shaped ? 2 : 1)) continue;
+        rel_say(", ");
+        if (v) rel_value(s, &rel_calls[op->call].fields[v->field], v);
+        else rel_say(k == 2 ? "0" : k < 6 ? "V(0, 0, 0)" : "dem_quat_make(1, 0, 0, 0)");
+    }
+    if (shaped) rel_say(", %s", rel_number(scale ? scale->v[0] : 1));
+    rel_say(")");
+}
+static int rel_refers(const rel_scene *s, const rel_op *op, int to) {
+    int j, k;
+    for (j = 0; j < op->count; j++) {
+        const rel_set *v = &op->set[j];
+        const rel_type type = rel_calls[op->call].fields[v->field].type;
+        if ((type == REL_REF || type == REL_BODY) && (int)v->v[0] == to) return 1;
+        if (type == REL_REF_ARRAY) for (k = 0; k < v->count; k++) if ((int)s->pool[v->at + k] == to) return 1;
+    }
+    return 0;
+}
+/* Has what the op makes a variable? */
+static int rel_kept(const rel_scene *s, int at) {
+    int i;
+    for (i = 0; i < s->count; i++) if (rel_refers(s, &s->op[i], at)) return 1;
+    return s->op[at].call == REL_A_BODY;
+}
+/* Writes an op as a statement. */
+static void rel_statement(const rel_scene *s, int at) {
     const rel_op *op = &s->op[at];
     const rel_call *c = &rel_calls[op->call];
-    rel_lists(out, s, op);
-    if (op->call == REL_A_BODY) {
-        static const char *const names[] = {"material", "shape", "radius", "position", "velocity", "spin"};
-        const rel_set *q = rel_given(op, "orientation", 11), *scale = rel_given(op, "scale", 5);
-        int k;
-        fprintf(out, "%sb[%d] = body(w", indent, at);
-        for (k = 0; k < 6; k++) {
-            const rel_set *v = rel_given(op, names[k], strlen(names[k]));
-            fputs(", ", out);
-            if (v) rel_value(out, s, op, &c->fields[v->field], v);
-            else fputs(k == 1 ? "ball" : k == 2 ? "0" : "still", out);
-        }
-        fputs(", ", out);
-        if (q) rel_value(out, s, op, &c->fields[q->field], q);
-        else fputs("level", out);
-        fputs(", ", out);
-        rel_number(out, scale ? scale->v[0] : 1);
-        fputs(");\n", out);
-        return;
+    if (*c->desc) rel_desc(s, op);
+    if (*c->makes && rel_kept(s, at)) {
+        rel_name(s, at);
+        rel_say(" = ");
     }
-    if (op->call == REL_PAIR && !rel_given(op, "a", 1)) return;
-    rel_desc(out, s, op, indent);
-    if (!*c->desc) fputs(indent, out);
-    if (*c->makes) {
-        rel_name(out, s, at);
-        fputs(" = ", out);
-    }
-    rel_text(out, s, op);
-    fputs(*c->desc ? "; }\n" : ";\n", out);
+    if (op->call == REL_A_BODY) rel_body_text(s, op);
+    else rel_text(s, op);
+    rel_say(*c->desc ? "; }" : ";");
 }
 static int rel_uses(const rel_scene *s, int call) {
     int i;
     for (i = 0; i < s->count; i++) if (s->op[i].call == call) return 1;
     return 0;
 }
-/* Writes a program whose function `scene` builds the world and `later` makes the calls of a step. */
-static void rel_print(FILE *out, const rel_scene *s, const char *why) {
-    int i, k, first;
-    fprintf(out, "/* %s */\n#define DEM_IMPLEMENTATION\n#include \"dem.h\"\n", why);
-    for (k = 0; k < REL_CODES; k++)
+/* Functions that the statements use. */
+typedef struct rel_helper { int call, shaped; const char *lines[9]; } rel_helper;
+static const rel_helper rel_helpers[] = {
+    {REL_A_BODY, 0, {
+        "static dem_body ball(dem_world *w, dem_material m, double r, dem_vec3 x, dem_vec3 v, dem_vec3 spin) {",
+        "    dem_body id = dem_sphere_add(w, m, r, x);", "    dem_body_state s;",
+        "    if (dem_body_get(w, id, &s) != DEM_OK) return id;", "    s.velocity = v;", "    s.spin = spin;",
+        "    dem_body_set(w, id, &s);", "    return id;", "}"}},
+    {REL_A_BODY, 1, {
+        "static dem_body body(dem_world *w, dem_material m, dem_shape s, dem_vec3 x, dem_vec3 v, dem_vec3 spin,",
+        "                     dem_quat q, dem_real scale) {",
+        "    const int n = dem_bodies_get(w).count;", "    const dem_real turned[4] = {q.w, q.x, q.y, q.z};",
+        "    dem_bodies_add(w, m, s, 1, &x.x, turned, &v.x, &spin.x, &scale);",
+        "    return dem_body_id_get(w, n);", "}", 0, 0}},
+    {REL_MESH, 0, {
+        "static dem_wall mesh(dem_world *w, dem_material m, int n, dem_real *x, int k, int32_t *t) {",
+        "    dem_mesh a;", "    a.vertex_count = n; a.vertices = x; a.triangle_count = k; a.triangles = t;",
+        "    return dem_wall_mesh_add(w, m, &a);", "}", 0, 0, 0, 0}},
+    {REL_PROFILE, 0, {
+        "static dem_wall profile(dem_world *w, dem_material m, int n, dem_real *x, int k, int32_t *t, int rule) {",
+        "    dem_profile a;", "    a.vertex_count = n; a.vertices = x; a.segment_count = k; a.segments = t;",
+        "    return dem_wall_profile_add(w, m, &a, rule);", "}", 0, 0, 0, 0}},
+    {REL_FIX, 0, {
+        "static void fix(dem_world *w, dem_body b, int fixed) {", "    dem_selection s = DEM_SELECTION;",
+        "    s.count = 1; s.bodies = &b;", "    dem_bodies_fixed_set(w, &s, fixed);", "}", 0, 0, 0, 0}},
+    {REL_KICK, 0, {
+        "static void kick(dem_world *w, dem_body b, dem_vec3 v, dem_vec3 spin) {", "    dem_selection s = DEM_SELECTION;",
+        "    s.count = 1; s.bodies = &b;", "    dem_bodies_velocity_set(w, &s, v, spin);", "}", 0, 0, 0, 0}}
+};
+static void rel_print_helpers(FILE *out, const rel_scene *s) {
+    int i, k, h;
+    for (h = 0; h < (int)(sizeof rel_helpers/sizeof *rel_helpers); h++) {
         for (i = 0; i < s->count; i++)
-            for (first = 0; first < s->op[i].count; first++)
-                if (rel_calls[s->op[i].call].fields[s->op[i].set[first].field].type == REL_CODE &&
-                    (int)s->op[i].set[first].v[0] == k) {
-                    fprintf(out, "%s\n", rel_codes[k].text);
-                    i = s->count - 1;
-                    break;
-                }
-    fprintf(out, "static dem_body b[%d];\n", s->count);
-    for (i = 0; i < s->count; i++)
-        if (*rel_calls[s->op[i].call].makes && s->op[i].call != REL_A_BODY) {
-            fprintf(out, "static %s ", rel_calls[s->op[i].call].type);
-            rel_name(out, s, i);
-            fputs(";\n", out);
+            if (s->op[i].call == rel_helpers[h].call && (rel_given(&s->op[i], "shape", 5) != 0) == rel_helpers[h].shaped) break;
+        for (k = 0; k < 9 && i < s->count && rel_helpers[h].lines[k]; k++) fprintf(out, "%s\n", rel_helpers[h].lines[k]);
+    }
+}
+/* Prints a text, broken after commas and semicolons where it would be wider than 112 columns. */
+static void rel_line(FILE *out, int indent, const char *text) {
+    int first = 1;
+    while (*text) {
+        const int room = 112 - indent - (first ? 0 : 4);
+        int n = (int)strlen(text), k;
+        while (n > 0 && text[n - 1] == ' ') n--;
+        if (n > room) {
+            for (k = room; k > 1 && !(text[k] == ' ' && (text[k - 1] == ',' || text[k - 1] == ';' || text[k - 1] == '{')); k--) continue;
+            if (k > 1) n = k;
         }
-    if (rel_uses(s, REL_A_BODY))
-        fputs("static const dem_vec3 still = {0, 0, 0}; static const dem_quat level = {1, 0, 0, 0}; static const dem_shape ball = {0};\n"
-              "static dem_body body(dem_world *w, dem_material m, dem_shape s, double r, dem_vec3 x, dem_vec3 v, dem_vec3 spin,\n"
-              "                     dem_quat q, double scale) {\n"
-              "    dem_real turn[4] = {q.w, q.x, q.y, q.z}, size = scale; dem_body_state state; dem_body id;\n"
-              "    if (s.id) { dem_bodies_add(w, m, s, 1, &x.x, turn, &v.x, &spin.x, &size); return dem_body_id_get(w, dem_bodies_get(w).count - 1); }\n"
-              "    id = dem_sphere_add(w, m, r, x); dem_body_get(w, id, &state); state.velocity = v; state.spin = spin;\n"
-              "    dem_body_set(w, id, &state); return id;\n}\n", out);
-    if (rel_uses(s, REL_MESH))
-        fputs("static dem_wall mesh(dem_world *w, dem_material m, int n, dem_real *x, int k, int32_t *t) {\n"
-              "    dem_mesh mesh; mesh.vertex_count = n; mesh.triangle_count = k; mesh.vertices = x; mesh.triangles = t; return dem_wall_mesh_add(w, m, &mesh);\n}\n", out);
-    if (rel_uses(s, REL_PROFILE))
-        fputs("static dem_wall profile(dem_world *w, dem_material m, int n, dem_real *x, int k, int32_t *t, int rule) {\n"
-              "    dem_profile p; p.vertex_count = n; p.segment_count = k; p.vertices = x; p.segments = t; return dem_wall_profile_add(w, m, &p, rule);\n}\n", out);
-    if (rel_uses(s, REL_FIX))
-        fputs("static void fix(dem_world *w, dem_body b, int fixed) { dem_selection s = DEM_SELECTION; s.count = 1; s.bodies = &b; dem_bodies_fixed_set(w, &s, fixed); }\n", out);
-    if (rel_uses(s, REL_KICK))
-        fputs("static void kick(dem_world *w, dem_body b, dem_vec3 v, dem_vec3 spin) { dem_selection s = DEM_SELECTION; s.count = 1; s.bodies = &b; dem_bodies_velocity_set(w, &s, v, spin); }\n", out);
-    fputs("static dem_world *scene(int threads, int skip) {\n    dem_world *w;\n", out);
-    rel_call_print(out, s, 0, "    ");
-    for (i = 1; i < s->count; i++) if (!s->op[i].step) rel_call_print(out, s, i, "    ");
-    fputs("    (void)threads; (void)skip;\n    return w;\n}\n", out);
-    fputs("static void later(dem_world *w, int step) {\n    (void)w; (void)step;\n", out);
-    for (i = 1; i < s->count; i++)
-        if (s->op[i].step) {
-            fprintf(out, "    if (step == %d) {\n", s->op[i].step);
-            rel_call_print(out, s, i, "        ");
-            fputs("    }\n", out);
-        }
-    fputs("}\n", out);
+        fprintf(out, "%*s%.*s\n", indent + (first ? 0 : 4), "", n, text);
+        for (text += n; *text == ' '; text++) continue;
+        first = 0;
+    }
 }
 #endif

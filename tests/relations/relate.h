@@ -9,14 +9,20 @@
 #include "draw.h"
 
 enum { REL_HOLDS, REL_BROKEN, REL_SKIPPED };
+typedef struct rel_map { double m[3][3], det, to[3], drift[3], length, time, mass; int exact; } rel_map;
 typedef struct rel_case {                      /* a scene, its run, and the run of its disturbed twin */
     const rel_scene *s;
     rel_run base, twin;
     int ran;                                   /* 1: without a refusal */
     rel_rng rng;
     char why[600];
+    /* what the relation that was checked last compared with what: program.h writes it down */
+    const rel_scene *image;                    /* the other scene; 0: the same */
+    rel_how how;                               /* how the other run is carried out */
+    rel_map map;
+    int other_ran, repeated, reversed, bad;    /* reversed: its bodies are; bad: the wrong call */
+    double allowed[2];                         /* m and m/s */
 } rel_case;
-typedef struct rel_map { double m[3][3], det, to[3], drift[3], length, time, mass; int exact; } rel_map;
 static const rel_map rel_same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1, {0, 0, 0}, {0, 0, 0}, 1, 1, 1, 0};
 
 static int rel_broken(rel_case *c, const char *format, ...) {
@@ -47,6 +53,9 @@ static int rel_bits(rel_case *c, const rel_scene *s, const rel_how *how, const c
     static rel_run other;
     const int ran = rel_go(&other, s, how);
     int k, result = REL_HOLDS;
+    c->how = *how;
+    c->other_ran = ran;
+    c->repeated = other.repeated;
     if (ran != c->ran)
         result = rel_broken(c, "%s: %s", what, ran ? "runs, the base does not" : other.message);
     for (k = 0; k < other.marks && k < c->base.marks && result == REL_HOLDS; k++)
@@ -85,7 +94,7 @@ static int rel_ledger_same(rel_case *c) {
     int k, ran, result = REL_HOLDS;
     if (!c->ran || rel_has(c, "ledger")) return REL_SKIPPED;
     how.ledger = 1;
-    ran = rel_go(&other, c->s, &how);
+    ran = c->other_ran = rel_go(&other, c->s, &how);
     if (!ran) result = rel_broken(c, "with the ledger: %s", other.message);
     for (k = 0; k < other.marks && k < c->base.marks && result == REL_HOLDS; k++)
         if (memcmp(other.mark[k].x, c->base.mark[k].x, (size_t)(REL_PER_BODY*c->base.mark[k].bodies)*sizeof(double)))
@@ -137,6 +146,7 @@ static int rel_refusal(rel_case *c) {
     uint64_t before;
     if (!c->ran || c->base.marks < 1) return REL_SKIPPED;
     if (!rel_build(&other, c->s, &how)) { rel_end(&other); return REL_SKIPPED; }
+    c->bad = k;
     before = dem_world_hash_get(other.w);
     if (!rel_bad_call(other.w, k)) result = rel_broken(c, "wrong call %d was carried out", k);
     else if (!*dem_world_error_get(other.w)) result = rel_broken(c, "wrong call %d left no message", k);
@@ -164,6 +174,7 @@ static int rel_compare(rel_case *c, const rel_run *other, const rel_map *map, co
     double floor = 1e-9, R = 1e-3;
     int k, i, e, f;
     if (rel_has(c, "impulses")) floor = 1e-4;
+    c->map = *map;
     for (k = 0; k < c->base.marks && k < other->marks; k++) {
         const rel_mark *p = &c->base.mark[k], *q = &other->mark[k], *t = &c->twin.mark[k];
         const double time = p->step*(double)dem_counters_get(c->base.w).dt;
@@ -175,6 +186,8 @@ static int rel_compare(rel_case *c, const rel_run *other, const rel_map *map, co
                                          time*fabs(t->x[REL_PER_BODY*i + 3 + e] - p->x[REL_PER_BODY*i + 3 + e])));
         if (chaos > 1e-6*R) return REL_HOLDS;
         tolerance = 1e3*chaos + floor*R;
+        c->allowed[0] = tolerance*map->length;
+        c->allowed[1] = 1e3*tolerance/R*(speed + 1e-3);
         for (i = 0; i < p->bodies; i++) {
             const double *a = p->x + REL_PER_BODY*i, *b = q->x + REL_PER_BODY*i;
             for (e = 0; e < 3; e++) {
@@ -187,7 +200,7 @@ static int rel_compare(rel_case *c, const rel_run *other, const rel_map *map, co
                 if (!(fabs(b[e] - x) <= tolerance*map->length))
                     return rel_broken(c, "%s: at step %d body %d is off by %.3g m (allowed: %.3g m; %d contacts)", what, p->step, i,
                                       fabs(b[e] - x), tolerance, c->base.contacts + c->base.wall_contacts);
-                if (!(fabs(b[3 + e] - v) <= 1e3*tolerance/R*(speed + 1e-3)))
+                if (!(fabs(b[3 + e] - v) <= c->allowed[1]))
                     return rel_broken(c, "%s: at step %d the velocity of body %d is off by %.3g m/s of %.3g m/s", what, p->step, i,
                                       fabs(b[3 + e] - v), speed);
             }
@@ -199,6 +212,8 @@ static int rel_near(rel_case *c, const rel_scene *s, const rel_how *how, const r
     static rel_run other;
     const int ran = rel_go(&other, s, how);
     int result;
+    c->image = s;
+    c->other_ran = ran;
     if (ran != c->ran && !(c->ran && other.failed == 1))
         result = rel_broken(c, "%s: %s", what, ran ? "runs, the base does not" : other.message);
     else result = rel_compare(c, &other, map, what);
@@ -230,7 +245,8 @@ static int rel_slabs(rel_case *c) {
     int ran, result = REL_HOLDS;
     if (!c->ran) return REL_SKIPPED;
     how.slabs = 1 + rel_below(&c->rng, 3);
-    ran = rel_go(&other, c->s, &how);
+    ran = c->other_ran = rel_go(&other, c->s, &how);
+    c->how = how;
     if (other.refused < 0) result = REL_SKIPPED;           /* by name: counted elsewhere */
     else if (!ran && !other.refused) result = rel_broken(c, "%d slabs: %s", how.slabs, other.message);
     else if (ran) result = rel_compare(c, &other, &rel_same, how.slabs == 1 ? "1 slab" : how.slabs == 2 ? "2 slabs" : "3 slabs");
@@ -390,7 +406,9 @@ static int rel_scaled(rel_case *c) {
     m.time = ldexp(1, 4*rel_below(&c->rng, 3) - 4);
     m.mass = ldexp(1, 4*rel_below(&c->rng, 5) - 8);
     rel_map_scene(&rel_image, c->s, &m);
-    ran = rel_go(&other, &rel_image, &how);
+    ran = c->other_ran = rel_go(&other, &rel_image, &how);
+    c->image = &rel_image;
+    c->map = m;
     if (!ran) result = rel_broken(c, "lengths times %g, masses times %g, times times %g: %s", m.length, m.mass, m.time, other.message);
     for (k = 0; k < other.marks && k < c->base.marks && result == REL_HOLDS; k++)
         for (i = 0; i < c->base.mark[k].bodies && result == REL_HOLDS; i++)
@@ -433,7 +451,9 @@ static int rel_order(rel_case *c, int walls) {
     if (n < 2) return REL_SKIPPED;
     for (i = 0; i < n/2; i++) rel_exchange(&rel_image, at[i], at[n - 1 - i]);
     if (walls) return rel_near(c, &rel_image, &how, &rel_same, "walls in another order");
-    ran = rel_go(&other, &rel_image, &how);
+    ran = c->other_ran = rel_go(&other, &rel_image, &how);
+    c->image = &rel_image;
+    c->reversed = 1;
     if (!ran && !other.failed) result = rel_broken(c, "bodies in another order: %s", other.message);
     for (k = 0; k < other.marks; k++)          /* back into the order of the base */
         for (i = 0; i < n/2; i++)
@@ -572,6 +592,19 @@ static const rel_relation rel_relations[] = {
     {"counts", "exact", rel_counted}, {"ledger closes", "5 %", rel_energy}
 };
 enum { REL_RELATIONS = (int)(sizeof rel_relations/sizeof *rel_relations) };
+/* Checks one relation. Its random choices follow from the seed of the scene and its number, whichever were checked
+   before. */
+static int rel_check(rel_case *c, int relation) {
+    c->rng.s = c->s->seed ^ 0x5bd1e995u ^ (uint64_t)relation << 32;
+    *c->why = 0;
+    c->image = 0;
+    memset(&c->how, 0, sizeof c->how);
+    c->map = rel_same;
+    c->other_ran = c->ran;
+    c->repeated = c->reversed = c->bad = 0;
+    c->allowed[0] = c->allowed[1] = 0;
+    return rel_relations[relation].check(c);
+}
 
 /* Runs the base and its disturbed twin, with the time step that dem.h chose made explicit. `s` is changed so. */
 static int rel_open_case(rel_case *c, rel_scene *s) {

@@ -26,6 +26,7 @@ struct rel_run {
     rel_mark mark[REL_MARKS + 1];
     int marks;
     int refused;                               /* 1 + the op that was refused; 0: none */
+    int repeated;                              /* the op that was repeated after a refused allocation; 0: none */
     int failed;                                /* 1: a step failed */
     char message[400];
     int contacts, wall_contacts;               /* largest numbers seen */
@@ -131,6 +132,7 @@ static int rel_calls_at(rel_run *r, int from, int step) {
             rel_allocations.refuse = 0;        /* it succeeds now */
             rel_arguments(r, op, a.bytes, pool, ints);
             made = rel_calls[op->call].call(r->w, a.bytes);
+            r->repeated = i;
         }
         if (!made) {
             r->refused = i + 1;
@@ -267,11 +269,12 @@ static int rel_change(rel_run *r, const rel_how *how, int step) {
 }
 /* Runs a scene to its end. Returns 1 unless a call was refused or a step failed; the marks up to there are valid. */
 static int rel_go(rel_run *r, const rel_scene *s, const rel_how *how) {
+    const int marks = s->marks ? s->marks : REL_MARKS;
     int step = 0, next, i, k, mark;
     if (!rel_build(r, s, how)) return 0;
     if (!rel_slabs_begin(r, how)) return 0;
-    for (k = 1; k <= REL_MARKS; k++) {
-        mark = s->steps*k/REL_MARKS;
+    for (k = 1; k <= marks; k++) {
+        mark = s->steps*k/marks;
         while (step < mark) {
             for (next = mark, i = 1; i < s->count; i++)
                 if (s->op[i].step > step && s->op[i].step < next) next = s->op[i].step;
@@ -280,8 +283,8 @@ static int rel_go(rel_run *r, const rel_scene *s, const rel_how *how) {
             if (step < mark && !rel_change(r, how, step)) return 0;
         }
         rel_put_mark(r, step);
-        if (how->checkpoint && k < REL_MARKS && !rel_checkpoint(r, how, step)) { r->failed = 2; return 0; }
-        if (k < REL_MARKS && !rel_change(r, how, step)) return 0;
+        if (how->checkpoint && k < marks && !rel_checkpoint(r, how, step)) { r->failed = 2; return 0; }
+        if (k < marks && !rel_change(r, how, step)) return 0;
     }
     r->hash = dem_world_hash_get(r->w);
     r->ledger = dem_ledger_get(r->w);

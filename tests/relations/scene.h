@@ -43,7 +43,7 @@ typedef struct rel_set { int field, count, at; double v[6]; } rel_set;
 typedef struct rel_op { int call, feature, step, count; rel_set set[REL_SETS]; } rel_op;
 typedef struct rel_scene {
     uint64_t seed;
-    int steps;
+    int steps, marks;                          /* marks: how often runs are compared; 0: REL_MARKS times */
     int count, pool_count;
     unsigned char has[REL_FEATURES];           /* rows of draw.h that it contains */
     double pool[REL_POOL];
