@@ -1,12 +1,13 @@
 /* print.h - the calls of a scene as C text. program.h makes a program of them.
 
-   The text of a call is written to a page: there are two, so that the call of a scene can be compared with the call
-   of its image. */
+   The text of a call is written to a page: page 0 for a scene, page 1 for its image, and page 2 for both of them, where
+   a number that differs is I(number in the scene, number in the image). */
 #ifndef REL_PRINT_H
 #define REL_PRINT_H
 #include "run.h"
+#include <ctype.h>
 
-static char rel_page[2][1 << 17];
+static char rel_page[3][1 << 17];
 static int rel_side;                           /* the page that is written */
 static size_t rel_written;
 static void rel_say(const char *format, ...) {
@@ -23,6 +24,29 @@ static void rel_new_page(int side) {
     rel_side = side;
     rel_written = 0;
     rel_page[side][0] = 0;
+}
+/* The length of the number at p; 0: there is none. */
+static size_t rel_digits(const char *start, const char *p) {
+    char *end;
+    const int letter = p > start && (isalnum((unsigned char)p[-1]) || p[-1] == '_' || p[-1] == '.');
+    if (letter || !(isdigit((unsigned char)*p) || (*p == '-' && isdigit((unsigned char)p[1])))) return 0;
+    strtod(p, &end);
+    return (size_t)(end - p);
+}
+/* Writes pages 0 and 1 as one text to page 2. Returns 0 if they differ in more than numbers. */
+static int rel_merge(void) {
+    const char *a = rel_page[0], *b = rel_page[1];
+    rel_new_page(2);
+    while (*a || *b) {
+        const size_t n = rel_digits(rel_page[0], a), m = rel_digits(rel_page[1], b);
+        if (n && m && (n != m || strncmp(a, b, n))) rel_say("I(%.*s, %.*s)", (int)n, a, (int)m, b);
+        else if (n && m) rel_say("%.*s", (int)n, a);
+        else if (*a != *b) return 0;
+        else rel_say("%c", *a);
+        a += n && m ? n : 1;
+        b += n && m ? m : 1;
+    }
+    return 1;
 }
 /* A number with as few digits as keep its value, without leading zeros of the exponent. */
 static const char *rel_number(double x) {
@@ -107,6 +131,15 @@ static void rel_desc(const rel_scene *s, const rel_op *op) {
         rel_name(s, (int)rel_given(op, "b", 1)->v[0]);
         rel_say(", &d); ");
     } else rel_say("{ %s d = %s; ", c->desc, c->zero);
+    if (op->call == REL_CLUSTER)
+        for (i = 0; i < op->count; i++) {
+            const rel_field *f = &c->fields[op->set[i].field];
+            if (f->type != REL_REALS) continue;
+            if (!strcmp(f->name, "radii")) rel_say("d.count = %d; ", op->set[i].count);
+            rel_say("d.%s = ", f->name);
+            rel_value(s, f, &op->set[i]);
+            rel_say("; ");
+        }
     for (i = 0; i < op->count; i++)
         if (!strncmp(c->fields[op->set[i].field].name, "d.", 2)) rel_assign(s, &c->fields[op->set[i].field], &op->set[i]);
 }
@@ -139,20 +172,26 @@ static void rel_text(const rel_scene *s, const rel_op *op) {
         p += n;
     }
 }
+/* Does a body need more than dem_sphere_add and dem_body_add? */
+static int rel_moves(const rel_op *op) {
+    const rel_set *v = rel_given(op, "velocity", 8), *o = rel_given(op, "spin", 4);
+    static const double none[3];
+    return (v && memcmp(v->v, none, sizeof none)) || (o && memcmp(o->v, none, sizeof none)) || rel_given(op, "scale", 5);
+}
 static void rel_body_text(const rel_scene *s, const rel_op *op) {
     static const char *const names[] = {"material", "shape", "radius", "position", "velocity", "spin", "orientation"};
-    const int shaped = rel_given(op, "shape", 5) != 0;
+    const int shaped = rel_given(op, "shape", 5) != 0, moves = rel_moves(op);
     const rel_set *scale = rel_given(op, "scale", 5);
     int k;
-    rel_say(shaped ? "body(w" : "ball(w");
+    rel_say(moves ? (shaped ? "body(w" : "ball(w") : shaped ? "dem_body_add(w" : "dem_sphere_add(w");
     for (k = 0; k < (shaped ? 7 : 6); k++) {
         const rel_set *v = rel_given(op, names[k], strlen(names[k]));
-        if (k == (shaped ? 2 : 1)) continue;
+        if (k == (shaped ? 2 : 1) || (!moves && (k == 4 || k == 5))) continue;
         rel_say(", ");
         if (v) rel_value(s, &rel_calls[op->call].fields[v->field], v);
         else rel_say(k == 2 ? "0" : k < 6 ? "V(0, 0, 0)" : "dem_quat_make(1, 0, 0, 0)");
     }
-    if (shaped) rel_say(", %s", rel_number(scale ? scale->v[0] : 1));
+    if (shaped && moves) rel_say(", %s", rel_number(scale ? scale->v[0] : 1));
     rel_say(")");
 }
 static int rel_refers(const rel_scene *s, const rel_op *op, int to) {
@@ -171,12 +210,12 @@ static int rel_kept(const rel_scene *s, int at) {
     for (i = 0; i < s->count; i++) if (rel_refers(s, &s->op[i], at)) return 1;
     return s->op[at].call == REL_A_BODY;
 }
-/* Writes an op as a statement. */
-static void rel_statement(const rel_scene *s, int at) {
+/* Writes an op as a statement. kept: what it makes has a variable. */
+static void rel_statement(const rel_scene *s, int at, int kept) {
     const rel_op *op = &s->op[at];
     const rel_call *c = &rel_calls[op->call];
     if (*c->desc) rel_desc(s, op);
-    if (*c->makes && rel_kept(s, at)) {
+    if (*c->makes && kept) {
         rel_name(s, at);
         rel_say(" = ");
     }
@@ -194,15 +233,14 @@ typedef struct rel_helper { int call, shaped; const char *lines[9]; } rel_helper
 static const rel_helper rel_helpers[] = {
     {REL_A_BODY, 0, {
         "static dem_body ball(dem_world *w, dem_material m, double r, dem_vec3 x, dem_vec3 v, dem_vec3 spin) {",
-        "    dem_body id = dem_sphere_add(w, m, r, x);", "    dem_body_state s;",
-        "    if (dem_body_get(w, id, &s) != DEM_OK) return id;", "    s.velocity = v;", "    s.spin = spin;",
-        "    dem_body_set(w, id, &s);", "    return id;", "}"}},
+        "    const dem_body id = dem_sphere_add(w, m, r, x);", "    dem_body_state s;",
+        "    if (dem_body_get(w, id, &s) != DEM_OK) return id;", "    s.velocity = v; s.spin = spin;",
+        "    dem_body_set(w, id, &s);", "    return id;", "}", 0}},
     {REL_A_BODY, 1, {
         "static dem_body body(dem_world *w, dem_material m, dem_shape s, dem_vec3 x, dem_vec3 v, dem_vec3 spin,",
-        "                     dem_quat q, dem_real scale) {",
-        "    const int n = dem_bodies_get(w).count;", "    const dem_real turned[4] = {q.w, q.x, q.y, q.z};",
+        "                     dem_quat q, dem_real scale) {", "    const dem_real turned[4] = {q.w, q.x, q.y, q.z};",
         "    dem_bodies_add(w, m, s, 1, &x.x, turned, &v.x, &spin.x, &scale);",
-        "    return dem_body_id_get(w, n);", "}", 0, 0}},
+        "    return dem_body_id_get(w, dem_bodies_get(w).count - 1);", "}", 0, 0, 0}},
     {REL_MESH, 0, {
         "static dem_wall mesh(dem_world *w, dem_material m, int n, dem_real *x, int k, int32_t *t) {",
         "    dem_mesh a;", "    a.vertex_count = n; a.vertices = x; a.triangle_count = k; a.triangles = t;",
@@ -222,21 +260,29 @@ static void rel_print_helpers(FILE *out, const rel_scene *s) {
     int i, k, h;
     for (h = 0; h < (int)(sizeof rel_helpers/sizeof *rel_helpers); h++) {
         for (i = 0; i < s->count; i++)
-            if (s->op[i].call == rel_helpers[h].call && (rel_given(&s->op[i], "shape", 5) != 0) == rel_helpers[h].shaped) break;
+            if (s->op[i].call == rel_helpers[h].call && (rel_given(&s->op[i], "shape", 5) != 0) == rel_helpers[h].shaped &&
+                (s->op[i].call != REL_A_BODY || rel_moves(&s->op[i]))) break;
         for (k = 0; k < 9 && i < s->count && rel_helpers[h].lines[k]; k++) fprintf(out, "%s\n", rel_helpers[h].lines[k]);
     }
 }
-/* Prints a text, broken after commas and semicolons where it would be wider than 112 columns. */
+/* Where to break a text that has more than `room` characters: after a semicolon, before an argument that is no number,
+   or after any comma. */
+static int rel_break(const char *text, int room) {
+    int k, kind;
+    for (kind = 0; kind < 3; kind++)
+        for (k = room; k > (kind < 2 ? room/2 : 1); k--) {
+            if (text[k] != ' ' || (text[k - 1] != ';' && text[k - 1] != ',' && text[k - 1] != '{')) continue;
+            if (kind == 2 || text[k - 1] == ';' || (kind == 1 && isalpha((unsigned char)text[k + 1]))) return k;
+        }
+    return (int)strlen(text);
+}
 static void rel_line(FILE *out, int indent, const char *text) {
     int first = 1;
     while (*text) {
         const int room = 112 - indent - (first ? 0 : 4);
-        int n = (int)strlen(text), k;
+        int n = (int)strlen(text);
         while (n > 0 && text[n - 1] == ' ') n--;
-        if (n > room) {
-            for (k = room; k > 1 && !(text[k] == ' ' && (text[k - 1] == ',' || text[k - 1] == ';' || text[k - 1] == '{')); k--) continue;
-            if (k > 1) n = k;
-        }
+        if (n > room) n = rel_break(text, room);
         fprintf(out, "%*s%.*s\n", indent + (first ? 0 : 4), "", n, text);
         for (text += n; *text == ' '; text++) continue;
         first = 0;

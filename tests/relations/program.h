@@ -32,13 +32,15 @@ static void rel_print_head(const rel_program *p, const char *why) {
     int i, j, k, n = 0, call;
     fprintf(p->out, "/* %s: %s.\n   cc -std=c99 %s-I. prog.c -lm */\n", rel_relations[p->relation].name, why,
             p->relation == REL_IS_THREADS ? "-fopenmp " : "");
-    fprintf(p->out, "#define DEM_IMPLEMENTATION\n#include \"dem.h\"\n#define V dem_vec3_make\n");
+    fprintf(p->out, "#define DEM_IMPLEMENTATION\n#include \"dem.h\"\n%s#define V dem_vec3_make\n",
+            p->relation == REL_IS_MEMORY ? "#include <stdlib.h>\n" : "");
     for (k = 0; k < REL_CODES; k++)
         for (i = 0, n = 0; i < s->count; i++)
             for (j = 0; j < s->op[i].count; j++)
                 if (rel_calls[s->op[i].call].fields[s->op[i].set[j].field].type == REL_CODE &&
                     (int)s->op[i].set[j].v[0] == k && !n++) rel_line(p->out, 0, rel_codes[k].text);
-    fprintf(p->out, "static dem_body b[%d];\n", rel_bodies(s) > 0 ? rel_bodies(s) : 1);
+    if (s != p->s) fprintf(p->out, "#define I(a, b) (image ? b : a)\n");
+    if (rel_bodies(s)) fprintf(p->out, "static dem_body b[%d];\n", rel_bodies(s));
     for (call = 0; call < REL_CALLS; call++) {
         if (call == REL_A_BODY || !*rel_calls[call].makes) continue;
         rel_new_page(0);
@@ -102,18 +104,22 @@ static void rel_print_world(const rel_program *p) {
     const rel_op *a = &p->s->op[0], *b = &p->image->op[0];
     const rel_call *c = &rel_calls[REL_WORLD];
     int i, k;
+    fprintf(p->out, "    dem_world_desc d = DEM_WORLD_DESC;\n    dem_world *w;\n");
     rel_new_page(0);
     for (i = 0; i < a->count; i++) rel_assign(p->s, &c->fields[a->set[i].field], &a->set[i]);
-    fprintf(p->out, "    dem_world_desc d = DEM_WORLD_DESC;\n    dem_world *w;\n");
-    rel_line(p->out, 4, rel_page[0]);
+    rel_new_page(1);
+    for (i = 0; i < a->count; i++) {
+        const char *name = c->fields[a->set[i].field].name;
+        rel_assign(p->image, &c->fields[a->set[i].field], rel_given(b, name, strlen(name)));
+    }
+    rel_merge();
+    rel_line(p->out, 4, rel_page[2]);
     for (i = 0; i < b->count; i++) {
         const rel_field *f = &c->fields[b->set[i].field];
-        const rel_set *v = rel_given(a, f->name, strlen(f->name));
-        if (v && !memcmp(v->v, b->set[i].v, sizeof v->v)) continue;
+        if (rel_given(a, f->name, strlen(f->name))) continue;
         rel_new_page(0);
-        rel_say("if (image) { ");
+        rel_say("if (image) ");
         rel_assign(p->image, f, &b->set[i]);
-        rel_say("}");
         rel_line(p->out, 4, rel_page[0]);
     }
     k = p->relation;
@@ -128,20 +134,25 @@ static void rel_print_world(const rel_program *p) {
 static void rel_print_calls(const rel_program *p, int step) {
     int i, said = 0;
     for (i = 1; i < p->image->count; i++) {
-        const int two = i < p->s->count;
+        const int two = i < p->s->count, kept = rel_kept(p->image, i) || (two && rel_kept(p->s, i));
         const char *a = rel_page[0], *b = rel_page[1];
         if (p->image->op[i].step != step) continue;
         if (step && !said++ && p->relation == REL_IS_SLABS) fprintf(p->out, "    if (image) { dem_slabs_destroy(slabs); slabs = 0; }\n");
         rel_new_page(0);
-        if (two) rel_statement(p->s, i);
+        if (two) rel_statement(p->s, i, kept);
         rel_new_page(1);
-        if (!two || strcmp((rel_statement(p->image, i), a), b)) {
-            if (two) { rel_new_page(1); rel_say("if (!image) %s", a); rel_line(p->out, 4, b); }
-            rel_new_page(1);
-            rel_say(two ? "else " : "if (image) ");
-            rel_statement(p->image, i);
-            rel_line(p->out, 4, b);
-        } else rel_line(p->out, 4, a);
+        if (!two) rel_say("if (image) ");
+        rel_statement(p->image, i, kept);
+        if (!two) rel_line(p->out, 4, b);
+        else if (rel_merge()) rel_line(p->out, 4, rel_page[2]);
+        else {
+            rel_new_page(2);
+            rel_say("if (!image) %s", a);
+            rel_line(p->out, 4, rel_page[2]);
+            rel_new_page(2);
+            rel_say("else %s", b);
+            rel_line(p->out, 4, rel_page[2]);
+        }
         if (p->relation == REL_IS_MEMORY && p->c->repeated == i) {
             rel_new_page(1);
             rel_say("if (image) %s", a);
@@ -211,13 +222,14 @@ static void rel_print_near(const rel_program *p) {
     const int exact = p->relation == REL_IS_UNITS || p->relation == REL_IS_LEDGER, parts = exact ? 9 : 6;
     const int leave = rel_uses(p->image, REL_REMOVE) || rel_uses(p->image, REL_OUTLET);
     const rel_set *dt = rel_given(&p->s->op[0], "d.dt", 4);
+    const char *const of = p->c->reversed ? "N - 1 - i" : "i";
     int e;
     fprintf(p->out, "enum { N = %d };\nint main(void) {\n    static dem_body_state s[2][N];\n    int k, i, e, wrong = 0;\n"
             "    for (k = 0; k < 2; k++) {\n        dem_world *w = run(k);\n"
             "        for (i = 0; i < N; i++) dem_body_get(w, b[i], &s[k][i]);\n    }\n    for (i = 0; i < N; i++) {\n",
             rel_bodies(p->s));
-    fprintf(p->out, "        const dem_body_state *q = &s[1][%s];\n", p->c->reversed ? "N - 1 - i" : "i");
     fprintf(p->out, "        const dem_vec3 x = s[0][i].position, v = s[0][i].velocity%s;\n", exact ? ", o = s[0][i].spin" : "");
+    fprintf(p->out, "        const dem_vec3 y = s[1][%s].position, u = s[1][%s].velocity%s;\n", of, of, exact ? ", c = s[1][i].spin" : "");
     rel_new_page(0);
     rel_say("const double want[] = {");
     for (e = 0; e < parts; e++) {
@@ -226,10 +238,7 @@ static void rel_print_near(const rel_program *p) {
     }
     rel_say("};");
     rel_line(p->out, 8, rel_page[0]);
-    rel_new_page(0);
-    rel_say("const double is[] = {q->position.x, q->position.y, q->position.z, q->velocity.x, q->velocity.y, q->velocity.z%s};",
-            exact ? ", q->spin.x, q->spin.y, q->spin.z" : "");
-    rel_line(p->out, 8, rel_page[0]);
+    fprintf(p->out, "        const double is[] = {y.x, y.y, y.z, u.x, u.y, u.z%s};\n", exact ? ", c.x, c.y, c.z" : "");
     fprintf(p->out, "        for (e = 0; e < %d; e++) {\n", parts);
     fprintf(p->out, "            if (%s", leave ? "(x.x == 0 && x.y == 0) || " : "");
     if (exact) fprintf(p->out, "is[e] == want[e]) continue;\n");

@@ -17,7 +17,7 @@ typedef struct rel_shrinking {
 } rel_shrinking;
 static rel_scene rel_smaller;                  /* the scene that is tried */
 
-/* A body without a shape of its own, wall, field or motion: its lists and references must stay. */
+/* Lists, references, the time step and what relations expect of each body stay. */
 static int rel_needed(const rel_op *op, const rel_field *f) {
     if (f->type >= REL_REF && f->type <= REL_DOUBLE_ARRAY) return 1;
     if (op->call == REL_WORLD) return !strcmp(f->name, "d.dt");
@@ -206,6 +206,7 @@ static double *rel_numbers_of(rel_scene *s, const rel_op *op, rel_set *v, int *c
 static int rel_round(rel_op *op, int j, int from, int to, int digits) {
     const int down = op->call == REL_WORLD && !strcmp(rel_field_at(op, j)->name, "d.dt");
     int n, k, changed = 0;
+    if (down && !digits) return 0;
     double *x = rel_numbers_of(&rel_smaller, op, &op->set[j], &n);
     for (k = from; k < n && k < to; k++) {
         const double y = x[k] < 0 || x[k] > 0 ? rel_rounder(x[k], digits, down) : 0;
@@ -251,23 +252,31 @@ static int rel_shrink_while(rel_scene *s, rel_predicate breaks, void *user, int 
     }
     return h.evaluations;
 }
+/* What must stay: the relation, and whether the other run differs or ends otherwise. */
+typedef struct rel_wanted { int relation, ends; } rel_wanted;
 static int rel_breaks(const rel_scene *s, void *user) {
     static rel_scene own;
     static rel_case c;
-    int broken;
+    rel_wanted *wanted = (rel_wanted *)user;
+    int broken, ends;
     rel_copy(&own, s);
-    broken = rel_open_case(&c, &own) && rel_check(&c, *(const int *)user) == REL_BROKEN;
+    broken = rel_open_case(&c, &own) && rel_check(&c, wanted->relation) == REL_BROKEN;
+    ends = c.ran != c.other_ran;
     rel_close_case(&c);
-    return broken;
+    if (broken && wanted->ends < 0) wanted->ends = ends;
+    return broken && ends == wanted->ends;
 }
 enum { REL_SHRINK_MOST = 20000, REL_SHRINK_SECONDS = 60, REL_REFUSED_MEMORY = 5 };
 /* Makes a scene that breaks a relation smaller. The time step becomes explicit. An allocation that is refused is
    another one in each smaller scene, so several are tried. Returns the number of evaluations; 0: it does not break. */
 static int rel_shrink(rel_scene *s, int relation) {
     static rel_case c;
-    const int opened = rel_open_case(&c, s);
+    const int opened = rel_open_case(&c, s), seeds = relation == REL_REFUSED_MEMORY ? 30 : 1;
+    rel_wanted wanted;
+    wanted.relation = relation;
+    wanted.ends = -1;
     rel_close_case(&c);
-    if (!opened || !rel_breaks(s, &relation)) return 0;
-    return rel_shrink_while(s, rel_breaks, &relation, relation == REL_REFUSED_MEMORY ? 30 : 1, REL_SHRINK_MOST, REL_SHRINK_SECONDS);
+    if (!opened || !rel_breaks(s, &wanted)) return 0;
+    return rel_shrink_while(s, rel_breaks, &wanted, seeds, REL_SHRINK_MOST, REL_SHRINK_SECONDS);
 }
 #endif
