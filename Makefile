@@ -260,6 +260,7 @@ tests/refused.h: tests/refused.awk dem.h
 	awk -f tests/refused.awk dem.h > $@
 build/obj/test_refused.o: tests/refused.h
 build/obj/test_naive.o: $(wildcard tests/relations/naive.*)
+build/obj/test_shrink.o: $(wildcard tests/relations/*.h)
 OPEN = -include build/rooms/private.h
 build/obj/test_own_law.o: OPEN =# compiles a law into dem.h
 define TEST

@@ -7,15 +7,15 @@
 #include "run.h"
 #include <ctype.h>
 
-static char rel_page[3][1 << 17];
+static char rel_paper[3][1 << 17];
 static int rel_side;                           /* the page that is written */
 static size_t rel_written;
 static void rel_say(const char *format, ...) {
-    const size_t room = sizeof *rel_page - rel_written;
+    const size_t room = sizeof *rel_paper - rel_written;
     va_list list;
     int n;
     va_start(list, format);
-    n = vsnprintf(rel_page[rel_side] + rel_written, room, format, list);
+    n = vsnprintf(rel_paper[rel_side] + rel_written, room, format, list);
     va_end(list);
     if (n < 0 || (size_t)n >= room) { fprintf(stderr, "relations: a call is too long to print\n"); exit(3); }
     rel_written += (size_t)n;
@@ -23,7 +23,7 @@ static void rel_say(const char *format, ...) {
 static void rel_new_page(int side) {
     rel_side = side;
     rel_written = 0;
-    rel_page[side][0] = 0;
+    rel_paper[side][0] = 0;
 }
 /* The length of the number at p; 0: there is none. */
 static size_t rel_digits(const char *start, const char *p) {
@@ -35,10 +35,10 @@ static size_t rel_digits(const char *start, const char *p) {
 }
 /* Writes pages 0 and 1 as one text to page 2. Returns 0 if they differ in more than numbers. */
 static int rel_merge(void) {
-    const char *a = rel_page[0], *b = rel_page[1];
+    const char *a = rel_paper[0], *b = rel_paper[1];
     rel_new_page(2);
     while (*a || *b) {
-        const size_t n = rel_digits(rel_page[0], a), m = rel_digits(rel_page[1], b);
+        const size_t n = rel_digits(rel_paper[0], a), m = rel_digits(rel_paper[1], b);
         if (n && m && (n != m || strncmp(a, b, n))) rel_say("I(%.*s, %.*s)", (int)n, a, (int)m, b);
         else if (n && m) rel_say("%.*s", (int)n, a);
         else if (*a != *b) return 0;

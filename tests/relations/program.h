@@ -51,7 +51,7 @@ static void rel_print_head(const rel_program *p, const char *why) {
             else rel_say("static %s ", rel_calls[call].type);
             rel_say("%s%d", rel_calls[call].makes, i);
         }
-        if (n) { rel_say(";"); rel_line(p->out, 0, rel_page[0]); }
+        if (n) { rel_say(";"); rel_line(p->out, 0, rel_paper[0]); }
     }
     rel_print_helpers(p->out, s);
 }
@@ -113,14 +113,14 @@ static void rel_print_world(const rel_program *p) {
         rel_assign(p->image, &c->fields[a->set[i].field], rel_given(b, name, strlen(name)));
     }
     rel_merge();
-    rel_line(p->out, 4, rel_page[2]);
+    rel_line(p->out, 4, rel_paper[2]);
     for (i = 0; i < b->count; i++) {
         const rel_field *f = &c->fields[b->set[i].field];
         if (rel_given(a, f->name, strlen(f->name))) continue;
         rel_new_page(0);
         rel_say("if (image) ");
         rel_assign(p->image, f, &b->set[i]);
-        rel_line(p->out, 4, rel_page[0]);
+        rel_line(p->out, 4, rel_paper[0]);
     }
     k = p->relation;
     if (k == REL_IS_THREADS) fprintf(p->out, "    if (image) d.threads = %d;\n", p->c->how.threads);
@@ -135,7 +135,7 @@ static void rel_print_calls(const rel_program *p, int step) {
     int i, said = 0;
     for (i = 1; i < p->image->count; i++) {
         const int two = i < p->s->count, kept = rel_kept(p->image, i) || (two && rel_kept(p->s, i));
-        const char *a = rel_page[0], *b = rel_page[1];
+        const char *a = rel_paper[0], *b = rel_paper[1];
         if (p->image->op[i].step != step) continue;
         if (step && !said++ && p->relation == REL_IS_SLABS) fprintf(p->out, "    if (image) { dem_slabs_destroy(slabs); slabs = 0; }\n");
         rel_new_page(0);
@@ -144,14 +144,14 @@ static void rel_print_calls(const rel_program *p, int step) {
         if (!two) rel_say("if (image) ");
         rel_statement(p->image, i, kept);
         if (!two) rel_line(p->out, 4, b);
-        else if (rel_merge()) rel_line(p->out, 4, rel_page[2]);
+        else if (rel_merge()) rel_line(p->out, 4, rel_paper[2]);
         else {
             rel_new_page(2);
             rel_say("if (!image) %s", a);
-            rel_line(p->out, 4, rel_page[2]);
+            rel_line(p->out, 4, rel_paper[2]);
             rel_new_page(2);
             rel_say("else %s", b);
-            rel_line(p->out, 4, rel_page[2]);
+            rel_line(p->out, 4, rel_paper[2]);
         }
         if (p->relation == REL_IS_MEMORY && p->c->repeated == i) {
             rel_new_page(1);
@@ -237,7 +237,7 @@ static void rel_print_near(const rel_program *p) {
         rel_mapped(&p->c->map, e, dt ? dt->v[0]*p->s->steps : 0);
     }
     rel_say("};");
-    rel_line(p->out, 8, rel_page[0]);
+    rel_line(p->out, 8, rel_paper[0]);
     fprintf(p->out, "        const double is[] = {y.x, y.y, y.z, u.x, u.y, u.z%s};\n", exact ? ", c.x, c.y, c.z" : "");
     fprintf(p->out, "        for (e = 0; e < %d; e++) {\n", parts);
     fprintf(p->out, "            if (%s", leave ? "(x.x == 0 && x.y == 0) || " : "");
@@ -280,7 +280,8 @@ static int rel_print_program(FILE *out, const rel_scene *s, int relation, const 
     rel_program p;
     int broken;
     rel_copy(&own, s);
-    broken = rel_open_case(&c, &own) && rel_check(&c, relation) == REL_BROKEN;
+    c.image = 0;
+    broken = rel_open_case(&c, &own) && rel_judge(&c, relation) == REL_BROKEN;
     if (relation == REL_IS_REFUSED) {          /* compared at the first mark */
         own.steps /= own.marks ? own.marks : REL_MARKS;
         own.marks = 1;
@@ -290,7 +291,7 @@ static int rel_print_program(FILE *out, const rel_scene *s, int relation, const 
     p.image = c.image ? c.image : &own;
     p.c = &c;
     p.relation = relation;
-    rel_print_head(&p, why ? why : c.why);
+    rel_print_head(&p, why ? why : *c.why ? c.why : "holds");
     rel_print_go(&p);
     rel_print_run(&p);
     rel_print_main(&p);

@@ -592,10 +592,9 @@ static const rel_relation rel_relations[] = {
     {"counts", "exact", rel_counted}, {"ledger closes", "5 %", rel_energy}
 };
 enum { REL_RELATIONS = (int)(sizeof rel_relations/sizeof *rel_relations) };
-/* Checks one relation. Its random choices follow from the seed of the scene and its number, whichever were checked
-   before. */
-static int rel_check(rel_case *c, int relation) {
-    c->rng.s = c->s->seed ^ 0x5bd1e995u ^ (uint64_t)relation << 32;
+/* Checks one relation. Its random choices follow from the seed of the scene, whichever were checked before. */
+static int rel_judge(rel_case *c, int relation) {
+    c->rng.s = c->s->seed ^ 0x5bd1e995u;
     *c->why = 0;
     c->image = 0;
     memset(&c->how, 0, sizeof c->how);

@@ -3,14 +3,13 @@
 
        build/relations --scenes 600                 the scenes 1 .. 600, each with three drawn relations
        build/relations --seed 97                    one scene with all relations
-       build/relations --seed 97 --relation slabs --print     ... and as a C program
+       build/relations --seed 97 --relation slabs --print     ... made smaller, as a C program
        build/relations --scenes 100000 --log build/relations.log     continues where the log ends
        build/relations --scenes 600 --page docs/relations.md  also writes the table
 
    The last line is "relations: N scenes, C checks, B broken"; the exit code is 1 if a relation is broken. */
-#include "print.h"
-#include "relate.h"
-#include <time.h>
+#include "shrink.h"
+#include "program.h"
 
 typedef struct rel_counts {
     uint64_t last;                             /* seeds 1 .. last are done */
@@ -56,7 +55,8 @@ static void rel_pairs(int to[REL_ROWS][REL_ROWS], const rel_scene *s, const rel_
    are broken. */
 static int rel_check(rel_scene *s, int most, const char *only, int print) {
     static rel_case c;
-    int order[REL_RELATIONS], i, k, broken = 0, checked = 0;
+    static rel_scene smaller;
+    int order[REL_RELATIONS], i, k, first = 0, broken = 0, checked = 0;
     const int ok = rel_open_case(&c, s);
     rel_rng r;
     if (!ok || !c.ran) {
@@ -81,8 +81,8 @@ static int rel_check(rel_scene *s, int most, const char *only, int print) {
         const rel_relation *relation = &rel_relations[order[k]];
         int result;
         if (only && strcmp(only, relation->name)) continue;
-        c.rng.s = s->seed ^ 0x5bd1e995u;       /* the same choices whichever relations come before */
-        result = relation->check(&c);
+        result = rel_judge(&c, order[k]);
+        first = order[k];
         rel_all.relation[order[k]][result]++;
         checked += result != REL_SKIPPED;
         rel_all.checks += result != REL_SKIPPED;
@@ -90,8 +90,12 @@ static int rel_check(rel_scene *s, int most, const char *only, int print) {
         broken++;
         printf("BROKEN scene %llu, %s: %s\n", (unsigned long long)s->seed, relation->name, c.why);
         rel_features_print(s);
+        if (!print) continue;
+        rel_copy(&smaller, s);
+        rel_shrink(&smaller, order[k]);
+        rel_print_program(stdout, &smaller, order[k], 0);
     }
-    if (print) rel_print(stdout, s, c.why);
+    if (print && !broken) rel_print_program(stdout, s, first, 0);
     rel_close_case(&c);
     rel_all.broken += broken;
     return broken;

@@ -1,0 +1,91 @@
+/* edit.h - what can be left out of a scene or rounded: calls, fields, vertices and digits. shrink.h decides. */
+#ifndef REL_EDIT_H
+#define REL_EDIT_H
+#include "relate.h"
+
+/* Lists, references, the time step and what relations expect of each body stay. */
+static int rel_needed(const rel_op *op, const rel_field *f) {
+    if (f->type >= REL_REF && f->type <= REL_DOUBLE_ARRAY) return 1;
+    if (op->call == REL_WORLD) return !strcmp(f->name, "d.dt");
+    return op->call == REL_A_BODY && (!strcmp(f->name, "position") || !strcmp(f->name, "velocity"));
+}
+static const rel_field *rel_field_at(const rel_op *op, int j) { return &rel_calls[op->call].fields[op->set[j].field]; }
+/* Relations rely on stiffness only if all materials have it. */
+static void rel_settle(rel_scene *s) {
+    int i, row, all = 1;
+    for (i = 0; i < s->count; i++)
+        if (s->op[i].call == REL_MATERIAL) {
+            const rel_set *v = rel_find(&s->op[i], "stiffness");
+            if (!v || !(v->v[0] > 0)) all = 0;
+        }
+    for (row = 0; row < REL_ROWS; row++) if (!all && !strcmp(rel_features[row].name, "stiffness")) s->has[row] = 0;
+}
+/* Removes ops `from` to `to` - 1 and all that refer to them. */
+static void rel_drop_ops(rel_scene *s, int from, int to) {
+    int new_at[REL_OPS], i, j, k, n = 0;
+    for (i = 0; i < s->count; i++) {
+        rel_op *op = &s->op[i];
+        int gone = i >= from && i < to;
+        for (j = 0; j < op->count && !gone; j++) {
+            const rel_type type = rel_field_at(op, j)->type;
+            rel_set *v = &op->set[j];
+            if ((type == REL_REF || type == REL_BODY) && v->v[0] >= 0) gone = new_at[(int)v->v[0]] < 0;
+            for (k = 0; type == REL_REF_ARRAY && k < v->count; k++) gone |= new_at[(int)s->pool[v->at + k]] < 0;
+        }
+        new_at[i] = gone ? -1 : n;
+        if (gone) continue;
+        for (j = 0; j < op->count; j++) {
+            const rel_type type = rel_field_at(op, j)->type;
+            rel_set *v = &op->set[j];
+            if ((type == REL_REF || type == REL_BODY) && v->v[0] >= 0) v->v[0] = new_at[(int)v->v[0]];
+            for (k = 0; type == REL_REF_ARRAY && k < v->count; k++) s->pool[v->at + k] = new_at[(int)s->pool[v->at + k]];
+        }
+        if (n != i) s->op[n] = *op;
+        n++;
+    }
+    s->count = n;
+}
+static void rel_drop_set(rel_op *op, int j) {
+    op->count--;
+    memmove(op->set + j, op->set + j + 1, (size_t)(op->count - j)*sizeof *op->set);
+}
+/* How many numbers of a list belong together and can be left out; 0: the list stays. */
+static int rel_group(const rel_op *op, const char *name) {
+    if (!strcmp(name, "triangles")) return op->call == REL_MESH ? 3 : 2;
+    if (!strcmp(name, "points") || (op->call == REL_GRAINS && !strcmp(name, "vertices"))) return 3;
+    return strcmp(name, "corners") ? 0 : 2;
+}
+/* Leaves out the vertices that no triangle or segment has. */
+static void rel_drop_vertices(rel_scene *s, rel_op *op) {
+    rel_set *x = rel_find(op, "vertices"), *t = rel_find(op, "triangles");
+    const int per = op->call == REL_MESH ? 3 : 2;
+    int i, k, n = 0;
+    for (i = 0; i < x->count/per; i++) {
+        int used = 0;
+        for (k = 0; k < t->count; k++)
+            if ((int)s->pool[t->at + k] == i) { s->pool[t->at + k] = n; used = 1; }
+        for (k = 0; k < per && used; k++) s->pool[x->at + per*n + k] = s->pool[x->at + per*i + k];
+        n += used;
+    }
+    x->count = per*n;
+}
+/* A number with fewer digits; time steps are rounded down. */
+static double rel_rounder(double x, int digits, int down) {
+    char text[40];
+    double y, unit;
+    if (!digits) return 0;
+    snprintf(text, sizeof text, "%.*e", digits - 1, x);
+    y = strtod(text, 0);
+    unit = pow(10, floor(log10(fabs(x))) - digits + 1);
+    if (down && y > x) { snprintf(text, sizeof text, "%.*e", digits - 1, y - unit); y = strtod(text, 0); }
+    return y;
+}
+/* The numbers of a set, of which there are *count; 0: none that may be rounded. */
+static double *rel_numbers_of(rel_scene *s, const rel_op *op, rel_set *v, int *count) {
+    const rel_type type = rel_calls[op->call].fields[v->field].type;
+    const int list = type == REL_REALS || type == REL_REAL_ARRAY || type == REL_DOUBLE_ARRAY;
+    *count = list ? v->count : type == REL_REAL || type == REL_DOUBLE ? 1 : type == REL_VEC ? 3 : type == REL_QUAT ? 4 :
+             type == REL_BOX ? 6 : 0;
+    return list ? s->pool + v->at : v->v;
+}
+#endif
