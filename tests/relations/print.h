@@ -107,6 +107,7 @@ static const rel_set *rel_given(const rel_op *op, const char *name, size_t lengt
 /* The assignment of a field of a desc. */
 static void rel_assign(const rel_scene *s, const rel_field *f, const rel_set *v) {
     int k;
+    if ((f->type == REL_BODY || f->type == REL_REF) && v->v[0] < 0) return;        /* none, as by default */
     if (f->type == REL_INT3) for (k = 0; k < 3; k++) rel_say("%s[%d] = %d; ", f->name, k, (int)v->v[k]);
     else if (f->type == REL_REAL_ARRAY || f->type == REL_DOUBLE_ARRAY || f->type == REL_REF_ARRAY)
         for (k = 0; k < v->count; k++) {

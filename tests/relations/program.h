@@ -165,7 +165,7 @@ static void rel_print_run(const rel_program *p) {
     static const char *const restart[] = {
         "static dem_world *run(int image, int until);", "static dem_world *continued(dem_world *old, int step) {",
         "    dem_world *w;", "    dem_checkpoint_write(old, \"relation.dem\");", "    w = run(2, step);", "    dem_world_destroy(old);",
-        "    if (dem_checkpoint_read(w, \"relation.dem\") != DEM_OK) puts(dem_world_error_get(w));", "    return w;", "}", 0};
+        "    if (dem_checkpoint_read(w, \"relation.dem\") != DEM_OK) puts(dem_world_error_get(w));", "    remove(\"relation.dem\");", "    return w;", "}", 0};
     const rel_scene *s = p->s;
     const int marks = s->marks ? s->marks : REL_MARKS;
     const int plain = rel_plain(p);
@@ -196,7 +196,7 @@ static void rel_print_run(const rel_program *p) {
             fprintf(p->out, "    if (until == %d) return w;\n    if (image == 1) w = continued(w, %d);\n", step, step);
         if (p->relation == REL_IS_USED)
             fprintf(p->out, "    if (image) {\n        dem_checkpoint_write(w, \"relation.dem\");\n        dem_world_step(w, 3);\n"
-                    "        if (dem_checkpoint_read(w, \"relation.dem\") != DEM_OK) puts(dem_world_error_get(w));\n    }\n");
+                    "        if (dem_checkpoint_read(w, \"relation.dem\") != DEM_OK) puts(dem_world_error_get(w));\n        remove(\"relation.dem\");\n    }\n");
         rel_print_calls(p, step);
     }
     fprintf(p->out, "    return w;\n}\n");
