@@ -5,9 +5,6 @@
 #include "relate.h"
 #include "print.h"
 
-/* The kinds of relations by the index of their row. */
-enum { REL_IS_THREADS, REL_IS_PIECES, REL_IS_RESTART, REL_IS_USED, REL_IS_LEDGER, REL_IS_MEMORY, REL_IS_REFUSED, REL_IS_SLABS,
-       REL_IS_UNITS = 14, REL_IS_MOMENTUM = 19, REL_IS_COUNTS, REL_IS_CLOSED };
 typedef struct rel_program {
     FILE *out;
     const rel_scene *s, *image;                /* the same where the relation has no image */

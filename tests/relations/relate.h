@@ -592,6 +592,9 @@ static const rel_relation rel_relations[] = {
     {"counts", "exact", rel_counted}, {"ledger closes", "5 %", rel_energy}
 };
 enum { REL_RELATIONS = (int)(sizeof rel_relations/sizeof *rel_relations) };
+/* The rows that program.h writes in a way of their own. */
+enum { REL_IS_THREADS, REL_IS_PIECES, REL_IS_RESTART, REL_IS_USED, REL_IS_LEDGER, REL_IS_MEMORY, REL_IS_REFUSED, REL_IS_SLABS,
+       REL_IS_UNITS = 14, REL_IS_MOMENTUM = 19, REL_IS_COUNTS, REL_IS_CLOSED };
 /* Checks one relation. Its random choices follow from the seed of the scene, whichever were checked before. */
 static int rel_judge(rel_case *c, int relation) {
     c->rng.s = c->s->seed ^ 0x5bd1e995u;

@@ -181,12 +181,12 @@ static int rel_breaks(const rel_scene *s, void *user) {
     if (broken && wanted->ends < 0) wanted->ends = ends;
     return broken && ends == wanted->ends;
 }
-enum { REL_SHRINK_MOST = 20000, REL_SHRINK_SECONDS = 60, REL_REFUSED_MEMORY = 5 };
+enum { REL_SHRINK_MOST = 20000, REL_SHRINK_SECONDS = 60 };
 /* Makes a scene that breaks a relation smaller. The time step becomes explicit. An allocation that is refused is
    another one in each smaller scene, so several are tried. Returns the number of evaluations; 0: it does not break. */
 static int rel_shrink(rel_scene *s, int relation) {
     static rel_case c;
-    const int opened = rel_open_case(&c, s), seeds = relation == REL_REFUSED_MEMORY ? 30 : 1;
+    const int opened = rel_open_case(&c, s), seeds = relation == REL_IS_MEMORY ? 30 : 1;
     rel_wanted wanted;
     wanted.relation = relation;
     wanted.ends = -1;
