@@ -42,7 +42,7 @@ static void demi_steer(dem_world *w, int wall, dem_real sign) {
     demi_kept_tile_begin(&tile, &run, DEMI_TILE);
     for (d = 0; d < w->domain_count; d++) {
         known = demi_kept_rows_begin(w, d, w->domains[d].kept);
-        for (k = 0; k < w->domains[d].kept && w->domains[d].kept_walls; k++) {
+        for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
             demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));

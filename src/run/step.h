@@ -848,11 +848,10 @@ static dem_result demi_step_ready(dem_world *h) {
         result = demi_radii_grow(h);
         if (result == DEM_OK) result = demi_dt_settle(h);
     }
-    if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed ||
-                             (!h->team && !h->stage.list_valid)))
+    if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed))
         result = demi_refresh(h);
     else if (result == DEM_OK && !h->stage.list_valid)
-        result = demi_all_rebuild(h);           /* slabs: inserted grains touch nothing */
+        result = demi_all_rebuild(h);           /* inserted grains touch nothing */
     if (result == DEM_OK) result = demi_dt_check(h);
     if (result == DEM_OK && !demi_bounded(h->clock.time + (double)h->clock.dt))
         result = demi_fail(h, DEM_ERROR_STOPPED, "dem_world_step: time is %g s and dt is %g s, "

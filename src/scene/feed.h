@@ -295,9 +295,11 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     if (joins) {
         qsort(found, (size_t)count, sizeof *found, demi_int_compare);
         joins = demi_list_join(w, i, found, count);
-        w->stage.pairs_changed |= !joins;             /* then lists are rebuilt */
+        /* then lists are rebuilt */
+        if (!joins && !demi_list_drop(w)) w->stage.pairs_changed = 1;
     }
-    if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0) {
+    if (!joins) demi_dt_outdated(w);
+    if (w->desc.force || w->desc.body_force || w->margin.reach > 0) {
         v = demi_at(w->bodies.vel + 4*i);       /* the open half kick is not due to this grain */
         demi_finish(w);
         demi_put(w->bodies.vel + 4*i, v);
