@@ -3,7 +3,8 @@
    Feeds of slabs, and dem_slabs_step. The head owns the feeds and draws new grains, the same in
    every process. Each slab tests its bodies for overlaps with a new grain. The slab between whose
    borders the grain is then inserts it. The grain gets a slot that was never used. All lists are
-   rebuilt before the step. Forces stay valid, because a new grain touches nothing.
+   rebuilt before the step. Forces stay valid, because a new grain touches nothing, unless there are
+   force fields or the law has a range.
    --------------------------------------------------------------------------------------------- */
 
 /* Reserves memory for one more body and for one more slot: slot numbers are those of the whole
@@ -98,7 +99,8 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     s->known[s->slots++] = 1;
     h->bodies.balance.inserted++;
     h->booked.speed_max = DEMI_MAX(h->booked.speed_max, (double)demi_length(v[n]));
-    if (h->desc.force || h->desc.body_force) demi_scene_changed(h);
+    /* forces may act on it */
+    if (h->desc.force || h->desc.body_force || demi_reach_of(h, 1) > 0) demi_scene_changed(h);
     demi_feed_count(f);
     return 1;
 }

@@ -967,6 +967,49 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("a grain of a new radius that a feed inserts far away leaves the others as they are, bit for bit, for any "
+         "integrator") {
+        int integrator, fed, i;
+        for (integrator = 0; integrator < 5; integrator++) {
+            dem_body_state state[2][2];
+            for (fed = 0; fed < 2; fed++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_feed_desc d = DEM_FEED_DESC;
+                dem_world *world;
+                dem_material stuff;
+                dem_body grain[2];
+                desc.gravity = at(0, 0, -9.81);
+                desc.dt = DEM_R(5e-6);
+                desc.integrator = (dem_integrator)integrator;
+                world = dem_world_create(&desc);
+                stuff = scene_material(world, 1e7, 0.5, 0.3, 0);
+                dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+                for (i = 0; i < 2; i++) {      /* both touch the floor and slip */
+                    grain[i] = dem_sphere_add(world, stuff, DEM_R(1e-3), at(0.01*i, 0, 0.999e-3));
+                    scene_move(world, grain[i], at(0.1, 0, -0.1 + 0.05*i), at(0, 0, 50));
+                }
+                d.material = stuff;
+                d.class_count = 1;
+                d.radius[0] = DEM_R(2e-3);
+                d.amount[0] = 1;
+                d.limited = 1;
+                d.start = 20*5e-6 - 1e-9;
+                d.box = box_of(1, 0, 0.1, 1, 0, 0.1);
+                if (fed) CHECK(dem_feed_add(world, &d).id);
+                CHECK_EQ(scene_step(world, 20), DEM_OK);
+                CHECK_EQ(dem_counters_get(world).wall_contacts, 2);
+                CHECK_EQ(scene_step(world, 20), DEM_OK);
+                CHECK_EQ(dem_body_counts_get(world).present, 2 + fed);
+                for (i = 0; i < 2; i++) state[fed][i] = scene_state(world, grain[i]);
+                dem_world_destroy(world);
+            }
+            for (i = 0; i < 2; i++)
+                CHECK(!memcmp(&state[0][i].position, &state[1][i].position, sizeof state[0][i].position) &&
+                      !memcmp(&state[0][i].velocity, &state[1][i].velocity, sizeof state[0][i].velocity) &&
+                      !memcmp(&state[0][i].spin, &state[1][i].spin, sizeof state[0][i].spin));
+        }
+    }
+
     TEST("a grain that a feed inserts beside another one collides and is attracted as one that is added") {
         int impulses, fed, i;
         for (impulses = 0; impulses < 2; impulses++) {

@@ -1,0 +1,142 @@
+/* What goes on after slabs were collected into a world, or were created from one that was changed: as in one world. */
+#define DEM_IMPLEMENTATION
+#include "../../dem.h"
+#include "../test.h"
+#include "../scene.h"
+
+/* The position, velocity and spin of a body are the same in two worlds, bit for bit. */
+static int alike(const dem_world *a, const dem_world *b, dem_body body) {
+    const dem_body_state x = scene_state(a, body), y = scene_state(b, body);
+    return !memcmp(&x.position, &y.position, sizeof x.position) && !memcmp(&x.velocity, &y.velocity, sizeof x.velocity) &&
+        !memcmp(&x.spin, &y.spin, sizeof x.spin);
+}
+/* A grain of 1 mm at a height z (m) that falls onto a floor at 0.2 m/s and slips on it. */
+static dem_world *slipping(int integrator, double z, dem_body *grain, dem_wall *floor) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material stuff;
+    desc.gravity = at(0, 0, -9.81);
+    desc.dt = DEM_R(5e-6);
+    desc.integrator = (dem_integrator)integrator;
+    world = dem_world_create(&desc);
+    stuff = scene_material(world, 1e7, 0.5, 0.3, 0);
+    *floor = dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+    *grain = dem_sphere_add(world, stuff, DEM_R(1e-3), at(0, 0, z));
+    scene_move(world, *grain, at(0.1, 0, -0.2), at(0, 0, 50));
+    return world;
+}
+/* Runs a world, in one slab if `slab`. */
+static void go(dem_world *world, int slab, int steps) {
+    dem_slabs_desc d = DEM_SLABS_DESC;
+    dem_slabs *slabs;
+    d.count = 1;
+    if (!slab) { CHECK_EQ(scene_step(world, steps), DEM_OK); return; }
+    slabs = dem_slabs_create(world, &d);
+    CHECK_EQ(dem_slabs_step(slabs, steps), DEM_OK);
+    CHECK_EQ(dem_slabs_collect(slabs, world), DEM_OK);
+    dem_slabs_destroy(slabs);
+}
+static void attracts(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    (void)memory;
+    f->normal = 200*c->overlap - DEM_R(1e-3);
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("a scene that has run in slabs from its first step goes on with the bits of one world, for any integrator") {
+        int integrator, again;
+        for (integrator = 0; integrator < 5; integrator++)
+            for (again = 0; again < 2; again++) {           /* in the world; in slabs that are created again */
+                dem_body grain;
+                dem_wall floor;
+                dem_world *one = slipping(integrator, 0.999e-3, &grain, &floor);
+                dem_world *other = slipping(integrator, 0.999e-3, &grain, &floor);
+                go(one, 0, 20);
+                go(other, 1, 20);
+                CHECK_EQ(dem_counters_get(one).wall_contacts, 1);
+                go(one, 0, 20);
+                go(other, again, 20);
+                CHECK(alike(one, other, grain));
+                dem_world_destroy(one);
+                dem_world_destroy(other);
+            }
+    }
+    TEST("slabs that are created after a pair of materials was changed start as one world, for any integrator") {
+        int integrator;
+        for (integrator = 0; integrator < 5; integrator++) {
+            dem_body grain;
+            dem_wall floor;
+            dem_world *world[2];
+            int k;
+            for (k = 0; k < 2; k++) {
+                dem_material stuff;
+                dem_pair pair;
+                stuff.id = 1;
+                world[k] = slipping(integrator, 0.999e-3, &grain, &floor);
+                go(world[k], 0, 20);
+                dem_pair_get(world[k], stuff, stuff, &pair);
+                pair.friction = DEM_R(0.9);
+                pair.restitution = DEM_R(0.1);
+                CHECK_EQ(dem_pair_set(world[k], stuff, stuff, &pair), DEM_OK);
+                go(world[k], k, 20);
+            }
+            CHECK(alike(world[0], world[1], grain));
+            for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+        }
+    }
+    TEST("a belt that starts in a world collected from slabs drags what came onto it there, from the first step on") {
+        int integrator;
+        for (integrator = 0; integrator < 5; integrator++) {
+            dem_body grain;
+            dem_wall floor;
+            dem_world *world[2];
+            int k;
+            for (k = 0; k < 2; k++) {
+                world[k] = slipping(integrator, 1.002e-3, &grain, &floor);
+                go(world[k], 0, 1);
+                CHECK_EQ(dem_counters_get(world[k]).wall_contacts, 0);
+                go(world[k], k, 20);
+                CHECK_EQ(dem_candidates_rebuild(world[k]), DEM_OK);
+                CHECK_EQ(dem_wall_surface_velocity_set(world[k], floor, at(0, 0.3, 0)), DEM_OK);
+                go(world[k], 0, 1);
+                CHECK_EQ(dem_counters_get(world[k]).wall_contacts, 1);
+                go(world[k], 0, 1);
+            }
+            CHECK(alike(world[0], world[1], grain));
+            for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+        }
+    }
+    TEST("a grain that a feed inserts within the range of a law is attracted at once, in a slab as in one world") {
+        dem_world *world[2];
+        dem_body resting;
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_feed_desc d = DEM_FEED_DESC;
+            dem_material stuff;
+            desc.dt = DEM_R(1e-5);
+            desc.law = attracts;
+            desc.law_stiffness = 200;
+            desc.law_range = DEM_R(5e-4);
+            world[k] = dem_world_create(&desc);
+            stuff = scene_material(world[k], 1e7, 0.5, 0, 0);
+            resting = dem_sphere_add(world[k], stuff, DEM_R(1e-2), at(0, 0, 0));
+            d.material = stuff;
+            d.class_count = 1;
+            d.radius[0] = DEM_R(1e-2);
+            d.amount[0] = 1;
+            d.limited = 1;
+            d.start = 20*1e-5 - 1e-9;
+            d.box = box_of(0.0202, 0, 0, 0.0202, 0, 0);
+            CHECK(dem_feed_add(world[k], &d).id);
+            go(world[k], 0, 20);
+            go(world[k], k, 1);
+            CHECK_EQ(dem_body_counts_get(world[k]).present, 2);
+        }
+        CHECK((double)scene_state(world[0], resting).position.x > 0);
+        CHECK(alike(world[0], world[1], resting));
+        for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+    }
+    return test_end();
+}
