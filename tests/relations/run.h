@@ -7,7 +7,7 @@
 /* What a scene is at some step: the bodies in the order in which the scene adds them, absent ones all 0; the force on
    each wall; sums. */
 enum { REL_MARKS = 6 };
-typedef struct rel_mark { int step, bodies; double *x, momentum[3], speed; uint64_t hash; } rel_mark;
+typedef struct rel_mark { int step, bodies, left; double *x, momentum[3], speed; uint64_t hash; } rel_mark;
 enum { REL_PER_BODY = 13 };                    /* position, velocity, spin, orientation */
 typedef struct rel_how {
     int threads;                               /* 0: as the scene has it */
@@ -172,6 +172,7 @@ static void rel_put_mark(rel_run *r, int step) {
     m->step = step;
     m->bodies = bodies;
     m->x = x;
+    m->left = (int)dem_body_counts_get(r->w).left;
     m->hash = dem_world_hash_get(r->w);
     r->contacts = c.contacts > r->contacts ? c.contacts : r->contacts;
     r->wall_contacts = c.wall_contacts > r->wall_contacts ? c.wall_contacts : r->wall_contacts;
@@ -258,13 +259,17 @@ static int rel_slabs_begin(rel_run *r, const rel_how *how) {
     r->refused = -1;
     return 0;
 }
-/* Makes the calls of a step, around which slabs end and begin again. */
+/* Makes the calls of a step, around which slabs end and begin again. A world that was collected has no list until
+   dem_candidates_rebuild, and continues as the slabs would after that (dem_slabs_collect). */
 static int rel_change(rel_run *r, const rel_how *how, int step) {
     int i;
     for (i = 1; i < r->s->count && r->s->op[i].step != step; i++) continue;
     if (i == r->s->count) return 1;
-    if (r->slabs) dem_slabs_destroy(r->slabs);
-    r->slabs = 0;
+    if (r->slabs) {
+        dem_slabs_destroy(r->slabs);
+        r->slabs = 0;
+        if (dem_candidates_rebuild(r->w) != DEM_OK) { rel_tell(r, dem_world_error_get(r->w)); return 0; }
+    }
     return rel_calls_at(r, 1, step) && rel_slabs_begin(r, how);
 }
 /* Runs a scene to its end. Returns 1 unless a call was refused or a step failed; the marks up to there are valid. */
