@@ -6054,7 +6054,8 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(clock.press_due, 'u', 0), DEMI_N(clock.press_since, 'u', 0),
     DEMI_N(clock.held, 'u', 0), DEMI_N(clock.grown, 'd', DEMI_ANY | DEMI_DEALT),
     DEMI_N(stage.dt_valid, 'i', DEMI_DEALT), DEMI_N(stage.list_valid, 'i', 0),
-    DEMI_N(stage.pairs_changed, 'i', 0), DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
+    DEMI_N(stage.pairs_changed, 'i', DEMI_TO_HEAD | DEMI_HEADS),
+    DEMI_N(stage.forces_valid, 'i', DEMI_HEADS),
     DEMI_N(stage.primed, 'i', DEMI_DEALT), DEMI_N(stage.moved, 'i', DEMI_HEADS),
     DEMI_N(stage.synced, 'i', DEMI_FIRSTS), DEMI_N(stage.near_stale, 'i', 0),
     DEMI_N(stage.quiet, 'i', 0),
@@ -29222,9 +29223,11 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     if (joins) {
         qsort(found, (size_t)count, sizeof *found, demi_int_compare);
         joins = demi_list_join(w, i, found, count);
-        w->stage.pairs_changed |= !joins;             /* then lists are rebuilt */
+        /* then lists are rebuilt */
+        if (!joins && !demi_list_drop(w)) w->stage.pairs_changed = 1;
     }
-    if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0) {
+    if (!joins) demi_dt_outdated(w);
+    if (w->desc.force || w->desc.body_force || w->margin.reach > 0) {
         v = demi_at(w->bodies.vel + 4*i);       /* the open half kick is not due to this grain */
         demi_finish(w);
         demi_put(w->bodies.vel + 4*i, v);
@@ -30522,7 +30525,7 @@ static void demi_steer(dem_world *w, int wall, dem_real sign) {
     demi_kept_tile_begin(&tile, &run, DEMI_TILE);
     for (d = 0; d < w->domain_count; d++) {
         known = demi_kept_rows_begin(w, d, w->domains[d].kept);
-        for (k = 0; k < w->domains[d].kept && w->domains[d].kept_walls; k++) {
+        for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
             demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
@@ -33827,11 +33830,10 @@ static dem_result demi_step_ready(dem_world *h) {
         result = demi_radii_grow(h);
         if (result == DEM_OK) result = demi_dt_settle(h);
     }
-    if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed ||
-                             (!h->team && !h->stage.list_valid)))
+    if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed))
         result = demi_refresh(h);
     else if (result == DEM_OK && !h->stage.list_valid)
-        result = demi_all_rebuild(h);           /* slabs: inserted grains touch nothing */
+        result = demi_all_rebuild(h);           /* inserted grains touch nothing */
     if (result == DEM_OK) result = demi_dt_check(h);
     if (result == DEM_OK && !demi_bounded(h->clock.time + (double)h->clock.dt))
         result = demi_fail(h, DEM_ERROR_STOPPED, "dem_world_step: time is %g s and dt is %g s, "
@@ -43502,7 +43504,8 @@ static dem_result demi_slabs_grades(dem_world *h, demi_grades *g) {
    Feeds of slabs, and dem_slabs_step. The head owns the feeds and draws new grains, the same in
    every process. Each slab tests its bodies for overlaps with a new grain. The slab between whose
    borders the grain is then inserts it. The grain gets a slot that was never used. All lists are
-   rebuilt before the step. Forces stay valid, because a new grain touches nothing.
+   rebuilt before the step. Forces stay valid, because a new grain touches nothing, unless there are
+   force fields or the law has a range.
    --------------------------------------------------------------------------------------------- */
 
 /* Reserves memory for one more body and for one more slot: slot numbers are those of the whole
@@ -43597,7 +43600,8 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     s->known[s->slots++] = 1;
     h->bodies.balance.inserted++;
     h->booked.speed_max = DEMI_MAX(h->booked.speed_max, (double)demi_length(v[n]));
-    if (h->desc.force || h->desc.body_force) demi_scene_changed(h);
+    /* forces may act on it */
+    if (h->desc.force || h->desc.body_force || demi_reach_of(h, 1) > 0) demi_scene_changed(h);
     demi_feed_count(f);
     return 1;
 }

@@ -252,7 +252,7 @@ static int rel_slabs(rel_case *c) {
     int ran, result = REL_HOLDS;
     if (!c->ran) return REL_SKIPPED;
     how.slabs = 1 + rel_below(&c->rng, 3);
-ran = c->other_ran = rel_go(&other, c->s, &how);
+    ran = c->other_ran = rel_go(&other, c->s, &how);
     c->how = how;
     c->lists = 1;
     if (other.refused < 0) result = REL_SKIPPED;           /* by name: counted elsewhere */
