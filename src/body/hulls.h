@@ -299,7 +299,7 @@ static void demi_polyhedron_bounds(demi_shape *s) {
     const int32_t *loops = s->rim + s->faces + 1;
     const dem_vec3 I = s->inertia;
     const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
-    const double r = demi_pow(s->volume*3/(4*DEMI_PI), 1.0/3);
+    const double r = demi_cube_root(s->volume*3/(4*DEMI_PI));
     demi_d3 corner[DEMI_HULL_CORNERS], n;
     int f, i;
     s->radius = s->moment_arm = 0;

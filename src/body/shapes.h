@@ -242,7 +242,7 @@ static void demi_ellipsoid_bounds(demi_shape *shape) {
     const double I[3] = {(double)shape->inertia.x, (double)shape->inertia.y,
                          (double)shape->inertia.z};
     const double a[3] = {(double)shape->axes.x, (double)shape->axes.y, (double)shape->axes.z};
-    const double l = demi_pow(a[0]*a[1]*a[2], 1.0/3);
+    const double l = demi_cube_root(a[0]*a[1]*a[2]);
     int i, k, j;
     shape->radius = (dem_real)DEMI_MAX(a[0], DEMI_MAX(a[1], a[2]));
     shape->thin = (dem_real)DEMI_MIN(a[0], DEMI_MIN(a[1], a[2]));
@@ -292,7 +292,7 @@ static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *sh
         return id;
     }
     if (!(shape->equal > 0))                    /* polygons have set theirs */
-        shape->equal = (dem_real)demi_pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
+        shape->equal = (dem_real)demi_cube_root(shape->volume*3/(4*DEMI_PI));
     w->shapes[w->shape_count++] = *shape;
     demi_built(w, call);
     id.id = w->shape_count;
@@ -721,8 +721,8 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
     out.depth_normal = (dem_real)((1 - w0)*(ha + hb));
     out.depth_chord = (dem_real)demi_meet_chord(&m, A);
     out.depth_conservative = (dem_real)((1 - w0)*
-        (demi_pow((double)a->semi_axes.x*(double)a->semi_axes.y*(double)a->semi_axes.z, 1.0/3) +
-         demi_pow((double)b->semi_axes.x*(double)b->semi_axes.y*(double)b->semi_axes.z, 1.0/3)));
+        (demi_cube_root((double)a->semi_axes.x*(double)a->semi_axes.y*(double)a->semi_axes.z) +
+         demi_cube_root((double)b->semi_axes.x*(double)b->semi_axes.y*(double)b->semi_axes.z)));
     return out;
 }
 

@@ -97,6 +97,14 @@ static double demi_exp(double x) {
 static double demi_pow(double x, double y) {
     return x > 0 ? demi_exp(y*demi_log(x)) : y > 0 ? x : y < 0 ? HUGE_VAL : 1;
 }
+/* Cube root, for x >= 0. A factor of 8 in x is exactly a factor of 2 in it, so that lengths from
+   volumes have the same bits in other units of length (powers of two). */
+static double demi_cube_root(double x) {
+    int e = 0, n;
+    const double m = frexp(x, &e);
+    n = (int)floor(e/3.0);
+    return ldexp(demi_pow(ldexp(m, e - 3*n), 1.0/3), n);
+}
 static double demi_atan(double x) { /* halves the angle twice, then sums the series */
     double u;
     int k;

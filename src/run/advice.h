@@ -51,7 +51,7 @@ static dem_vec3 demi_down(const dem_world *w) {
    radius of curvature of the flattest point is larger, the mass is also multiplied by the root of
    the ratio of the two radii. demi_advise_radius: the same for a body. */
 static double demi_advise_shape(const dem_world *w, const demi_shape *shape, double equal) {
-    const double scale = equal/(double)shape->equal, r = equal*demi_pow(shape->light, 1.0/3);
+    const double scale = equal/(double)shape->equal, r = equal*demi_cube_root(shape->light);
     const double sharp = r/((double)shape->blunt*scale);
     return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*demi_pow(sharp, 1.0/6) : r;
 }

@@ -229,7 +229,7 @@ DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_co
         if (!(number > 0)) continue;
         amount[n] = share;
         radius[n++] = (dem_real)(w->desc.planar ? sqrt(mass/number)
-                                                : demi_pow(mass/number, 1.0/3));
+                                                : demi_cube_root(mass/number));
     }
     for (i = 0; i < n; i++) amount[i] /= all;
     demi_free(w, t);

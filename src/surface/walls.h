@@ -230,7 +230,7 @@ static void demi_wall_cells_choose(demi_wall *wall) {
         if (corners == 1) extent += 2*(double)wall->radius;
     }
     mean = extent/n;
-    fine = volume > 0 ? demi_pow(volume/(16*n), 1.0/3) : mean;
+    fine = volume > 0 ? demi_cube_root(volume/(16*n)) : mean;
     wall->cell = (dem_real)DEMI_MAX(DEMI_MIN(mean, fine), 1e-6*(double)demi_length(size));
     for (;; wall->cell *= DEM_R(1.26)) {
         wall->cells[0] = (int)DEMI_MIN(size.x/wall->cell, DEM_R(1e6)) + 1;
