@@ -230,9 +230,11 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
     demi_solved o = {0, 0, 0};
     do {
         demi_run_sums sums;
+        dem_real joints;
         demi_colours_all(w, task);
         sums = demi_runs_sum(&w->solver);
-        sums.worst = DEMI_MAX(sums.worst, demi_joints_sweep(w));
+        joints = demi_joints_sweep(w);          /* once: a macro would evaluate it twice */
+        sums.worst = DEMI_MAX(sums.worst, joints);
         demi_solved_tell(&w->solver, &o, sums);
     } while ((++o.sweeps < most && demi_solved_open(w, &o)) || demi_joints_guard(w));
     return o;
