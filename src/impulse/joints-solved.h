@@ -164,9 +164,11 @@ static int demi_joints_room(dem_world *w) {
    axis, unit. */
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
 /* Returns the time, s, between the contact detections of this step and the next. A body that has
-   made no step since it was set is at the beginning of the step in the first, not in the middle. */
+   made no step since it was set is at the beginning of the step in the first, not in the middle; a
+   wall in the first step of the world. */
 static dem_real demi_knot_ahead(const dem_world *w, int body) {
-    return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
+    const int went = body < w->bodies.count ? w->bodies.went[body] : w->clock.steps > 0;
+    return w->solver.dt*(went ? 1 : DEM_R(1.5));
 }
 /* Returns end 0 (a) or 1 (b) of a joint: as it is now, or (`ahead`) at the next detection, with the
    velocities of the impulses found so far. */
@@ -642,7 +644,7 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
    before the solve, (m/s)^2. */
 static dem_real demi_joints_solve(dem_world *w, int shifts) {
     demi_solver *s = &w->solver;
-    dem_real worst = 0, lacks[6];
+    dem_real worst = 0, left, lacks[6];
     int i, k;
     if (!s->factored) demi_knots_factor(w);
     s->factored = 1;
@@ -651,7 +653,8 @@ static dem_real demi_joints_solve(dem_world *w, int shifts) {
         demi_knot *knot = s->knots + i;
         memset(knot->x, 0, sizeof knot->x);
         if (knot->rod < 0) continue;
-        worst = DEMI_MAX(worst, demi_rod_lacks(w, knot->rod, shifts, lacks));
+        left = demi_rod_lacks(w, knot->rod, shifts, lacks);
+        worst = DEMI_MAX(worst, left);
         for (k = 0; k < 6; k++) knot->x[k] = -(double)lacks[k];
     }
     demi_knots_solve(s);
@@ -745,8 +748,10 @@ static int demi_joints_guard(dem_world *w) {
 }
 /* Closes the gaps of guarded groups by displacements, as far as the energy that they may spend
    covers the work against gravity. Gaps that the user has made by moving a body are closed whatever
-   the work. Returns the largest displacement, m. */
+   the work. `digit` keeps round-off from deciding where the work is 0: displacements of a group that
+   nothing holds leave its centre of mass. Returns the largest displacement, m. */
 static double demi_joints_shift(dem_world *w) {
+    const double digit = DEMI_SINGLE ? 1e-6 : 1e-12;
     demi_solver *s = &w->solver;
     double farthest = 0;
     int i, any = 0;
@@ -756,7 +761,8 @@ static double demi_joints_shift(dem_world *w) {
     for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i;
-        const double fall = demi_d3_dot(demi_d3_of(w->desc.gravity), demi_d3_at(k->x));
+        const demi_d3 g = demi_d3_of(w->desc.gravity), x = demi_d3_at(k->x);
+        const double fall = demi_d3_dot(g, x) + digit*demi_d3_length(g)*demi_d3_length(x);
         if (k->mover >= 0)
             s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
