@@ -164,11 +164,9 @@ static int demi_joints_room(dem_world *w) {
    axis, unit. */
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
 /* Returns the time, s, between the contact detections of this step and the next. A body that has
-   made no step since it was set is at the beginning of the step in the first, not in the middle; a
-   wall in the first step of the world. */
+   made no step since it was set is at the beginning of the step in the first, not in the middle. */
 static dem_real demi_knot_ahead(const dem_world *w, int body) {
-    const int went = body < w->bodies.count ? w->bodies.went[body] : w->clock.steps > 0;
-    return w->solver.dt*(went ? 1 : DEM_R(1.5));
+    return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
 }
 /* Returns end 0 (a) or 1 (b) of a joint: as it is now, or (`ahead`) at the next detection, with the
    velocities of the impulses found so far. */
