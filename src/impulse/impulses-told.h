@@ -350,7 +350,8 @@ static void demi_some_back(dem_world *w, int index) {
    scene that moves as a whole would have other gaps than one at rest. Joints predict their walls
    from half a step ahead. */
 static void demi_ahead(dem_world *w) {
-    const double dt = (double)w->clock.dt, lead = w->clock.steps || w->joint_count ? dt/2 : 0;
+    const double dt = (double)w->clock.dt;
+    const double lead = w->clock.steps || w->joint_count ? dt/2 : 0;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
     demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);

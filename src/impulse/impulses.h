@@ -377,7 +377,7 @@ static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, co
     *hits = closing;
     if (!(y[6*o->stride] > 0) || !w->bodies.went[m->a] ||
         (m->b < w->bodies.count && !w->bodies.went[m->b])) return 0;
-    if (!w->stage.forces_valid) {               /* the same step is solved again: as it was found */
+    if (!w->stage.forces_valid) {               /* the same step is solved again */
         *hits = closing - 2*y[9*o->stride];
         return closing < 0 ? DEMI_MAX(y[9*o->stride], closing) : 0;
     }

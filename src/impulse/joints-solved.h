@@ -746,8 +746,8 @@ static int demi_joints_guard(dem_world *w) {
 }
 /* Closes the gaps of guarded groups by displacements, as far as the energy that they may spend
    covers the work against gravity. Gaps that the user has made by moving a body are closed whatever
-   the work. `digit` keeps round-off from deciding where the work is 0: displacements of a group that
-   nothing holds leave its centre of mass. Returns the largest displacement, m. */
+   the work. `digit` keeps round-off from deciding where the work is 0: displacements of a group
+   that nothing holds leave its centre of mass. Returns the largest displacement, m. */
 static double demi_joints_shift(dem_world *w) {
     const double digit = DEMI_SINGLE ? 1e-6 : 1e-12;
     demi_solver *s = &w->solver;
