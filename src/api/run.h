@@ -83,10 +83,10 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
        DEM_ERROR_STOPPED    an output stopped the run; desc.unsolved_stops is 1 and the sweeps of a
                             step did not reach the tolerance; or an overlap is above
                             desc.overlap_stop. The step is complete.
-       DEM_ERROR_MEMORY     The bodies may have moved already; the step then counts as taken. The
-                            next call completes it first, here or in a world that has read a
-                            checkpoint written meanwhile. The bits are those of a run without the
-                            interruption. */
+       DEM_ERROR_MEMORY     The bodies and the time may have moved already. The step counts
+                            (dem_world_steps_get) when it is complete: the next call completes it as
+                            its first step, here or in a world that has read a checkpoint written
+                            meanwhile. The bits are those of a run without the interruption. */
 DEM_API dem_result dem_world_step(dem_world *world, int steps);
 /* Receives the progress of a run, about ten times per second of wall time and once at the end.
    done: fraction, 0 to 1. seconds_left: estimated wall time, s. A non-zero return value stops the
@@ -171,7 +171,7 @@ DEM_API dem_result dem_world_dt_set(dem_world *world, dem_real dt);
 
 /* Returns the simulated time, s. */
 DEM_API double dem_world_time_get(const dem_world *world);
-/* Returns the number of steps taken. */
+/* Returns the number of complete steps. */
 DEM_API uint64_t dem_world_steps_get(const dem_world *world);
 /* Returns a 64-bit digest of the state: time, positions, orientations, velocities, spins, walls,
    joints, feeds, outlets and contact history. Equal runs have equal digests. */

@@ -571,9 +571,10 @@ static void demi_domain_finish(dem_world *w, int d) {
 }
 
 /* Performs the second half kick that a step leaves open. Velocities then belong to the present
-   time. */
+   time. In the middle of a step (stage.moved) there are no forces for it, and velocities stay as
+   predicted. */
 static void demi_finish(dem_world *w) {
-    if (w->stage.synced) return;
+    if (w->stage.synced || w->stage.moved) return;
     demi_domains_do(w, demi_domain_finish);
     w->stage.synced = 1;
 }

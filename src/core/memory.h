@@ -288,7 +288,7 @@ static const dem_joint demi_no_joint = {0};
 
 static dem_result demi_no_memory(dem_world *w, const char *call) {
     return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies "
-                     "or a smaller skin; nothing was changed", call, (double)w->bytes/1e6);
+                     "or a smaller skin; nothing was lost", call, (double)w->bytes/1e6);
 }
 
 /* Allocate and free by the user's allocator, which may not change the world; w is null while there

@@ -12,7 +12,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     int d, k;
     memset(&c, 0, sizeof c);
     if (!w) return c;
-    c.steps = w->clock.steps;
+    c.steps = demi_steps_done(w);
     c.rebuilds = w->clock.rebuilds;
     for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
         c.candidates += w->domains[d].own + w->domains[d].cross;

@@ -27,6 +27,10 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         return demi_refuse(w, __func__, "seconds is %g, must be finite and >= 0", seconds);
     if (demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (progress) w->look.tenths_told = 0;      /* dem_world_settle reports for several runs */
+    if (w->stage.moved) {                       /* it ran out of memory; its time has passed */
+        const dem_result rest = dem_world_step(w, 1);
+        if (rest != DEM_OK) return rest;
+    }
     end = start + seconds;
     /* it continues the last run: from the end that was requested there, so that runs add up */
     if (w->clock.run_steps == w->clock.steps &&
@@ -200,5 +204,5 @@ DEM_API double dem_world_time_get(const dem_world *w) {
 }
 DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
     if (demi_null_look(w, __func__, w, "world")) return 0;
-    return w->clock.steps;
+    return demi_steps_done(w);
 }

@@ -864,8 +864,9 @@ static dem_result demi_step_ready(dem_world *h) {
 /* Performs `steps` steps of all members, with replay frames and outputs between them. `call` names
    the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
-    dem_result result = steps ? demi_look(h) : DEM_OK;
-    int i, whole = 1;
+    /* not in the middle of a step: what is due there is written when the step is complete */
+    dem_result result = steps && !h->stage.moved ? demi_look(h) : DEM_OK;
+    int i;
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
         demi_crew_begin(h);
@@ -873,16 +874,15 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
         if (result == DEM_OK) {
             result = demi_step_once(h);
             demi_crew_end(h);
-            whole = result == DEM_OK;
-            if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
+            if (result == DEM_OK && demi_member(h, 0)->field_count)
+                result = demi_all(h, demi_member_sample);
         }
         demi_called(h, was);
         if (result == DEM_OK) result = demi_events_tell(h, call);
         if (result == DEM_OK) result = demi_look(h);
     }
     if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* failures of the last forces */
-    /* not in the middle of a step: velocities then stay as predicted */
-    if (whole || !h->stage.moved) demi_all(h, demi_member_finish);
+    if (!h->stage.moved) demi_all(h, demi_member_finish);
     return result;
 }
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {

@@ -692,7 +692,7 @@ DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
     memset(&c, 0, sizeof c);
     if (!s) return c;
     c.time = s->head.clock.time;
-    c.steps = s->head.clock.steps;
+    c.steps = demi_steps_done(&s->head);
     c.rebuilds = s->head.clock.rebuilds;
     c.border_moves = s->border_moves;
     for (k = 0; k < s->local; k++) c.migrated += s->slabs[k].migrated;
