@@ -1328,7 +1328,7 @@ int main(int argc, char **argv) {
                 }
                 for (tries = 0; tries < 3; tries++) {
                     const int left = steps - (int)dem_slabs_counters_get(slabs).steps;
-                    result = dem_slabs_step(slabs, left + (slabs->head.stage.moved != 0));
+                    result = dem_slabs_step(slabs, left);
                     if (result == DEM_OK) break;
                     CHECK_EQ(result, DEM_ERROR_MEMORY);
                     CHECK_STR(dem_slabs_error_get(slabs), "out of memory");
