@@ -553,8 +553,8 @@ DEM_INLINE void demi_called(const dem_world *w, demi_calling was) {
 /* In a function that stands in for one of the user's, and that DEMI_USER calls. */
 #define DEMI_USER_WITHIN(call) call
 
-/* Steps that are complete. One that ran out of memory after its move does not count yet; functions of
-   the user that are called in a step see its number. */
+/* Steps that are complete. One that ran out of memory after its move does not count yet; functions
+   of the user that are called in a step see its number. */
 static uint64_t demi_steps_done(const dem_world *w) {
     return w->clock.steps - (uint64_t)(w->stage.moved && !w->look.calling.who);
 }

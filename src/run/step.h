@@ -535,9 +535,10 @@ static dem_result demi_member_move(dem_world *w) {
     w->stage.moved = result == DEM_OK;
     return result;
 }
-/* Rebuilds the pruned neighbour list if it is due. */
+/* Rebuilds the pruned neighbour list if it is due, or was when memory ran out: by the span chosen
+   for the next list it may not be. */
 static dem_result demi_member_near(dem_world *w) {
-    if (!w->stage.near_stale && !demi_near_due(w)) return DEM_OK;
+    if (!w->stage.near_stale && !w->stage.near_chosen && !demi_near_due(w)) return DEM_OK;
     if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
     w->stage.near_chosen = 1;
     if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
@@ -622,7 +623,7 @@ static dem_result demi_moved(dem_world *h) {
     h->margin.last_change = most[CHANGE];
     h->margin.gone += most[GONE];
     h->margin.walls_gone = most[WALLS];
-    h->near_due = !h->team || most[CREEP] + 2*most[CHANGE]*dt > -1e-6*h->margin.skin ||
+    h->near_due = most[CREEP] + 2*most[CHANGE]*dt > -1e-6*h->margin.skin ||
         most[AGE] > -1e-6*dt;
     for (k = 0; k < demi_members(h); k++) {
         dem_world *w = demi_member(h, k);
@@ -732,7 +733,7 @@ static dem_result demi_step_answer(dem_world *h) {
         result = demi_all_rebuild(h);
         if (result == DEM_OK && demi_outgrown(h)) h->stage.dt_valid = 0;
     }
-    if (result == DEM_OK) result = demi_all_forces(h, !search && h->near_due);
+    if (result == DEM_OK) result = demi_all_forces(h, !search && (!h->team || h->near_due));
     if (result == DEM_OK) result = demi_all(h, demi_member_end);
     if (result != DEM_OK) return result;
     h->stage.moved = 0;
