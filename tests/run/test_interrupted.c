@@ -44,7 +44,7 @@ static dem_world *collapse(scene_memory *c, unsigned parts) {
     motion.kind = DEM_MOTION_OSCILLATING;
     motion.velocity = at(0, 0, 1);
     motion.amplitude = (dem_real)(1e-3*size);
-    motion.frequency = 100/sqrt(size);
+    motion.frequency = (dem_real)(100/sqrt(size));
     CHECK_EQ(dem_wall_motion_set(world, plane, &motion), DEM_OK);
     if (parts & ELLIPSOIDS) shape = dem_shape_ellipsoid_add(world, at(8e-4*size, 1e-3*size, 1.3e-3*size));
     if (parts & POLYHEDRA) shape = scene_box(world, 1.6e-3*size, 1.3e-3*size, 1e-3*size);
@@ -172,6 +172,32 @@ static void interrupts(unsigned parts, int steps, int by) {
     remove(looked);
 }
 
+/* Every pruned list asks for memory, because that of isolated bodies is taken away (with gravity there are none), and
+   is refused it once. */
+static void prunes(void) {
+    scene_memory c[2];
+    dem_world *world[2];
+    int i, k, refused = 0;
+    for (k = 0; k < 2; k++) world[k] = collapse(&c[k], SPRINGS);
+    for (i = 0; i < 400 && test_now.wrong == 0; i++) {
+        for (k = 0; k < 2; k++) {
+            demi_free(world[k], world[k]->quiet);
+            world[k]->quiet = 0;
+        }
+        c[1].refuse = c[1].calls + 1;
+        if (dem_world_step(world[1], 1) == DEM_ERROR_MEMORY) {
+            refused += world[1]->stage.moved && world[1]->stage.list_valid;
+            CHECK_EQ(scene_step(world[1], 1), DEM_OK);
+        }
+        CHECK_EQ(scene_step(world[0], 1), DEM_OK);
+        CHECK_EQ(dem_world_hash_get(world[1]), dem_world_hash_get(world[0]));
+        CHECK_NEAR(world[1]->margin.span, world[0]->margin.span, 0);
+        CHECK_NEAR(world[1]->margin.age, world[0]->margin.age, 0);
+    }
+    CHECK(refused > 10);
+    for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -189,5 +215,6 @@ int main(int argc, char **argv) {
     TEST("a refused request of memory in a step changes no bit of a run: joined boxes") {
         interrupts(IMPULSES | POLYHEDRA | JOINTS | PERIODIC, 50, 3);
     }
+    TEST("a pruned list that was refused memory is made when the step is repeated") { prunes(); }
     return test_end();
 }
