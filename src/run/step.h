@@ -623,8 +623,7 @@ static dem_result demi_moved(dem_world *h) {
     h->margin.last_change = most[CHANGE];
     h->margin.gone += most[GONE];
     h->margin.walls_gone = most[WALLS];
-    h->near_due = most[CREEP] + 2*most[CHANGE]*dt > -1e-6*h->margin.skin ||
-        most[AGE] > -1e-6*dt;
+    h->near_due = most[CREEP] + 2*most[CHANGE]*dt > -1e-6*h->margin.skin || most[AGE] > -1e-6*dt;
     for (k = 0; k < demi_members(h); k++) {
         dem_world *w = demi_member(h, k);
         w->margin.gone = h->margin.gone;
