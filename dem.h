@@ -2764,10 +2764,10 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
        DEM_ERROR_STOPPED    an output stopped the run; desc.unsolved_stops is 1 and the sweeps of a
                             step did not reach the tolerance; or an overlap is above
                             desc.overlap_stop. The step is complete.
-       DEM_ERROR_MEMORY     The bodies may have moved already; the step then counts as taken. The
-                            next call completes it first, here or in a world that has read a
-                            checkpoint written meanwhile. The bits are those of a run without the
-                            interruption. */
+       DEM_ERROR_MEMORY     The bodies and the time may have moved already. The step counts
+                            (dem_world_steps_get) when it is complete: the next call completes it as
+                            its first step, here or in a world that has read a checkpoint written
+                            meanwhile. The bits are those of a run without the interruption. */
 DEM_API dem_result dem_world_step(dem_world *world, int steps);
 /* Receives the progress of a run, about ten times per second of wall time and once at the end.
    done: fraction, 0 to 1. seconds_left: estimated wall time, s. A non-zero return value stops the
@@ -2852,7 +2852,7 @@ DEM_API dem_result dem_world_dt_set(dem_world *world, dem_real dt);
 
 /* Returns the simulated time, s. */
 DEM_API double dem_world_time_get(const dem_world *world);
-/* Returns the number of steps taken. */
+/* Returns the number of complete steps. */
 DEM_API uint64_t dem_world_steps_get(const dem_world *world);
 /* Returns a 64-bit digest of the state: time, positions, orientations, velocities, spins, walls,
    joints, feeds, outlets and contact history. Equal runs have equal digests. */
@@ -4188,6 +4188,14 @@ static double demi_exp(double x) {
 static double demi_pow(double x, double y) {
     return x > 0 ? demi_exp(y*demi_log(x)) : y > 0 ? x : y < 0 ? HUGE_VAL : 1;
 }
+/* Cube root, for x >= 0. A factor of 8 in x is exactly a factor of 2 in it, so that lengths from
+   volumes have the same bits in other units of length (powers of two). */
+static double demi_cube_root(double x) {
+    int e = 0, n;
+    const double m = frexp(x, &e);
+    n = (int)floor(e/3.0);
+    return ldexp(demi_pow(ldexp(m, e - 3*n), 1.0/3), n);
+}
 static double demi_atan(double x) { /* halves the angle twice, then sums the series */
     double u;
     int k;
@@ -5454,6 +5462,12 @@ DEM_INLINE void demi_called(const dem_world *w, demi_calling was) {
 /* In a function that stands in for one of the user's, and that DEMI_USER calls. */
 #define DEMI_USER_WITHIN(call) call
 
+/* Steps that are complete. One that ran out of memory after its move does not count yet; functions
+   of the user that are called in a step see its number. */
+static uint64_t demi_steps_done(const dem_world *w) {
+    return w->clock.steps - (uint64_t)(w->stage.moved && !w->look.calling.who);
+}
+
 /* Calls a task for each work group. Marks this as a call of user-defined functions, because tasks
    on several threads cannot. */
 static void demi_domains_do(dem_world *w, demi_task task) {
@@ -5765,7 +5779,7 @@ static const dem_joint demi_no_joint = {0};
 
 static dem_result demi_no_memory(dem_world *w, const char *call) {
     return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies "
-                     "or a smaller skin; nothing was changed", call, (double)w->bytes/1e6);
+                     "or a smaller skin; nothing was lost", call, (double)w->bytes/1e6);
 }
 
 /* Allocate and free by the user's allocator, which may not change the world; w is null while there
@@ -7058,7 +7072,7 @@ static void demi_ellipsoid_bounds(demi_shape *shape) {
     const double I[3] = {(double)shape->inertia.x, (double)shape->inertia.y,
                          (double)shape->inertia.z};
     const double a[3] = {(double)shape->axes.x, (double)shape->axes.y, (double)shape->axes.z};
-    const double l = demi_pow(a[0]*a[1]*a[2], 1.0/3);
+    const double l = demi_cube_root(a[0]*a[1]*a[2]);
     int i, k, j;
     shape->radius = (dem_real)DEMI_MAX(a[0], DEMI_MAX(a[1], a[2]));
     shape->thin = (dem_real)DEMI_MIN(a[0], DEMI_MIN(a[1], a[2]));
@@ -7108,7 +7122,7 @@ static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *sh
         return id;
     }
     if (!(shape->equal > 0))                    /* polygons have set theirs */
-        shape->equal = (dem_real)demi_pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
+        shape->equal = (dem_real)demi_cube_root(shape->volume*3/(4*DEMI_PI));
     w->shapes[w->shape_count++] = *shape;
     demi_built(w, call);
     id.id = w->shape_count;
@@ -7537,8 +7551,8 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
     out.depth_normal = (dem_real)((1 - w0)*(ha + hb));
     out.depth_chord = (dem_real)demi_meet_chord(&m, A);
     out.depth_conservative = (dem_real)((1 - w0)*
-        (demi_pow((double)a->semi_axes.x*(double)a->semi_axes.y*(double)a->semi_axes.z, 1.0/3) +
-         demi_pow((double)b->semi_axes.x*(double)b->semi_axes.y*(double)b->semi_axes.z, 1.0/3)));
+        (demi_cube_root((double)a->semi_axes.x*(double)a->semi_axes.y*(double)a->semi_axes.z) +
+         demi_cube_root((double)b->semi_axes.x*(double)b->semi_axes.y*(double)b->semi_axes.z)));
     return out;
 }
 
@@ -8529,7 +8543,7 @@ static void demi_polyhedron_bounds(demi_shape *s) {
     const int32_t *loops = s->rim + s->faces + 1;
     const dem_vec3 I = s->inertia;
     const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
-    const double r = demi_pow(s->volume*3/(4*DEMI_PI), 1.0/3);
+    const double r = demi_cube_root(s->volume*3/(4*DEMI_PI));
     demi_d3 corner[DEMI_HULL_CORNERS], n;
     int f, i;
     s->radius = s->moment_arm = 0;
@@ -10704,9 +10718,10 @@ static void demi_domain_finish(dem_world *w, int d) {
 }
 
 /* Performs the second half kick that a step leaves open. Velocities then belong to the present
-   time. */
+   time. In the middle of a step (stage.moved) there are no forces for it, and velocities stay as
+   predicted. */
 static void demi_finish(dem_world *w) {
-    if (w->stage.synced) return;
+    if (w->stage.synced || w->stage.moved) return;
     demi_domains_do(w, demi_domain_finish);
     w->stage.synced = 1;
 }
@@ -11824,7 +11839,7 @@ static void demi_wall_cells_choose(demi_wall *wall) {
         if (corners == 1) extent += 2*(double)wall->radius;
     }
     mean = extent/n;
-    fine = volume > 0 ? demi_pow(volume/(16*n), 1.0/3) : mean;
+    fine = volume > 0 ? demi_cube_root(volume/(16*n)) : mean;
     wall->cell = (dem_real)DEMI_MAX(DEMI_MIN(mean, fine), 1e-6*(double)demi_length(size));
     for (;; wall->cell *= DEM_R(1.26)) {
         wall->cells[0] = (int)DEMI_MIN(size.x/wall->cell, DEM_R(1e6)) + 1;
@@ -25705,8 +25720,8 @@ static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, co
     if (!(y[6*o->stride] > 0) || !w->bodies.went[m->a] ||
         (m->b < w->bodies.count && !w->bodies.went[m->b])) return 0;
     if (!w->stage.forces_valid) {               /* the same step is solved again */
-        if (y[9*o->stride] < 0) *hits = 0;
-        return y[9*o->stride];
+        *hits = closing - 2*y[9*o->stride];
+        return closing < 0 ? DEMI_MAX(y[9*o->stride], closing) : 0;
     }
     if (k && k->b < 0) {
         const demi_wall *wall = &w->walls[k->wall];
@@ -26676,7 +26691,7 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
    before the solve, (m/s)^2. */
 static dem_real demi_joints_solve(dem_world *w, int shifts) {
     demi_solver *s = &w->solver;
-    dem_real worst = 0, lacks[6];
+    dem_real worst = 0, left, lacks[6];
     int i, k;
     if (!s->factored) demi_knots_factor(w);
     s->factored = 1;
@@ -26685,7 +26700,8 @@ static dem_real demi_joints_solve(dem_world *w, int shifts) {
         demi_knot *knot = s->knots + i;
         memset(knot->x, 0, sizeof knot->x);
         if (knot->rod < 0) continue;
-        worst = DEMI_MAX(worst, demi_rod_lacks(w, knot->rod, shifts, lacks));
+        left = demi_rod_lacks(w, knot->rod, shifts, lacks);
+        worst = DEMI_MAX(worst, left);
         for (k = 0; k < 6; k++) knot->x[k] = -(double)lacks[k];
     }
     demi_knots_solve(s);
@@ -26779,8 +26795,10 @@ static int demi_joints_guard(dem_world *w) {
 }
 /* Closes the gaps of guarded groups by displacements, as far as the energy that they may spend
    covers the work against gravity. Gaps that the user has made by moving a body are closed whatever
-   the work. Returns the largest displacement, m. */
+   the work. `digit` keeps round-off from deciding where the work is 0: displacements of a group
+   that nothing holds leave its centre of mass. Returns the largest displacement, m. */
 static double demi_joints_shift(dem_world *w) {
+    const double digit = DEMI_SINGLE ? 1e-6 : 1e-12;
     demi_solver *s = &w->solver;
     double farthest = 0;
     int i, any = 0;
@@ -26790,7 +26808,8 @@ static double demi_joints_shift(dem_world *w) {
     for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i;
-        const double fall = demi_d3_dot(demi_d3_of(w->desc.gravity), demi_d3_at(k->x));
+        const demi_d3 g = demi_d3_of(w->desc.gravity), x = demi_d3_at(k->x);
+        const double fall = demi_d3_dot(g, x) + digit*demi_d3_length(g)*demi_d3_length(x);
         if (k->mover >= 0)
             s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
@@ -27136,9 +27155,11 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
     demi_solved o = {0, 0, 0};
     do {
         demi_run_sums sums;
+        dem_real joints;
         demi_colours_all(w, task);
         sums = demi_runs_sum(&w->solver);
-        sums.worst = DEMI_MAX(sums.worst, demi_joints_sweep(w));
+        joints = demi_joints_sweep(w);          /* once: a macro would evaluate it twice */
+        sums.worst = DEMI_MAX(sums.worst, joints);
         demi_solved_tell(&w->solver, &o, sums);
     } while ((++o.sweeps < most && demi_solved_open(w, &o)) || demi_joints_guard(w));
     return o;
@@ -27782,9 +27803,12 @@ static void demi_some_back(dem_world *w, int index) {
 }
 /* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
    is its pose a whole step ahead, midway between two detections; surface velocities are those of
-   that time. */
+   that time. In the first step of a world no body is ahead, and neither are walls: if they were, a
+   scene that moves as a whole would have other gaps than one at rest. Joints predict their walls
+   from half a step ahead. */
 static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
+    const double lead = w->clock.steps || w->joint_count ? dt/2 : 0;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
     demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
@@ -27793,7 +27817,7 @@ static void demi_ahead(dem_world *w) {
         dem_pose pose;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time + lead, &pose);
         if (demi_pose_sane(&pose)) wall->pose = pose;
         demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
         if (demi_pose_sane(&pose)) wall->ahead = pose;
@@ -28078,7 +28102,7 @@ DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_co
         if (!(number > 0)) continue;
         amount[n] = share;
         radius[n++] = (dem_real)(w->desc.planar ? sqrt(mass/number)
-                                                : demi_pow(mass/number, 1.0/3));
+                                                : demi_cube_root(mass/number));
     }
     for (i = 0; i < n; i++) amount[i] /= all;
     demi_free(w, t);
@@ -29666,7 +29690,7 @@ static dem_vec3 demi_down(const dem_world *w) {
    radius of curvature of the flattest point is larger, the mass is also multiplied by the root of
    the ratio of the two radii. demi_advise_radius: the same for a body. */
 static double demi_advise_shape(const dem_world *w, const demi_shape *shape, double equal) {
-    const double scale = equal/(double)shape->equal, r = equal*demi_pow(shape->light, 1.0/3);
+    const double scale = equal/(double)shape->equal, r = equal*demi_cube_root(shape->light);
     const double sharp = r/((double)shape->blunt*scale);
     return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*demi_pow(sharp, 1.0/6) : r;
 }
@@ -33517,9 +33541,10 @@ static dem_result demi_member_move(dem_world *w) {
     w->stage.moved = result == DEM_OK;
     return result;
 }
-/* Rebuilds the pruned neighbour list if it is due. */
+/* Rebuilds the pruned neighbour list if it is due, or was when memory ran out: by the span chosen
+   for the next list it may not be. */
 static dem_result demi_member_near(dem_world *w) {
-    if (!w->stage.near_stale && !demi_near_due(w)) return DEM_OK;
+    if (!w->stage.near_stale && !w->stage.near_chosen && !demi_near_due(w)) return DEM_OK;
     if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
     w->stage.near_chosen = 1;
     if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
@@ -33604,8 +33629,7 @@ static dem_result demi_moved(dem_world *h) {
     h->margin.last_change = most[CHANGE];
     h->margin.gone += most[GONE];
     h->margin.walls_gone = most[WALLS];
-    h->near_due = !h->team || most[CREEP] + 2*most[CHANGE]*dt > -1e-6*h->margin.skin ||
-        most[AGE] > -1e-6*dt;
+    h->near_due = most[CREEP] + 2*most[CHANGE]*dt > -1e-6*h->margin.skin || most[AGE] > -1e-6*dt;
     for (k = 0; k < demi_members(h); k++) {
         dem_world *w = demi_member(h, k);
         w->margin.gone = h->margin.gone;
@@ -33714,7 +33738,7 @@ static dem_result demi_step_answer(dem_world *h) {
         result = demi_all_rebuild(h);
         if (result == DEM_OK && demi_outgrown(h)) h->stage.dt_valid = 0;
     }
-    if (result == DEM_OK) result = demi_all_forces(h, !search && h->near_due);
+    if (result == DEM_OK) result = demi_all_forces(h, !search && (!h->team || h->near_due));
     if (result == DEM_OK) result = demi_all(h, demi_member_end);
     if (result != DEM_OK) return result;
     h->stage.moved = 0;
@@ -33846,8 +33870,9 @@ static dem_result demi_step_ready(dem_world *h) {
 /* Performs `steps` steps of all members, with replay frames and outputs between them. `call` names
    the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
-    dem_result result = steps ? demi_look(h) : DEM_OK;
-    int i, whole = 1;
+    /* not in the middle of a step: what is due there is written when the step is complete */
+    dem_result result = steps && !h->stage.moved ? demi_look(h) : DEM_OK;
+    int i;
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
         demi_crew_begin(h);
@@ -33855,16 +33880,15 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
         if (result == DEM_OK) {
             result = demi_step_once(h);
             demi_crew_end(h);
-            whole = result == DEM_OK;
-            if (whole && demi_member(h, 0)->field_count) result = demi_all(h, demi_member_sample);
+            if (result == DEM_OK && demi_member(h, 0)->field_count)
+                result = demi_all(h, demi_member_sample);
         }
         demi_called(h, was);
         if (result == DEM_OK) result = demi_events_tell(h, call);
         if (result == DEM_OK) result = demi_look(h);
     }
     if (result == DEM_OK) result = demi_agree(h, 0, 0);     /* failures of the last forces */
-    /* not in the middle of a step: velocities then stay as predicted */
-    if (whole || !h->stage.moved) demi_all(h, demi_member_finish);
+    if (!h->stage.moved) demi_all(h, demi_member_finish);
     return result;
 }
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
@@ -33908,6 +33932,10 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         return demi_refuse(w, __func__, "seconds is %g, must be finite and >= 0", seconds);
     if (demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (progress) w->look.tenths_told = 0;      /* dem_world_settle reports for several runs */
+    if (w->stage.moved) {                       /* it ran out of memory; its time has passed */
+        const dem_result rest = dem_world_step(w, 1);
+        if (rest != DEM_OK) return rest;
+    }
     end = start + seconds;
     /* it continues the last run: from the end that was requested there, so that runs add up */
     if (w->clock.run_steps == w->clock.steps &&
@@ -34081,7 +34109,7 @@ DEM_API double dem_world_time_get(const dem_world *w) {
 }
 DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
     if (demi_null_look(w, __func__, w, "world")) return 0;
-    return w->clock.steps;
+    return demi_steps_done(w);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -34098,7 +34126,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     int d, k;
     memset(&c, 0, sizeof c);
     if (!w) return c;
-    c.steps = w->clock.steps;
+    c.steps = demi_steps_done(w);
     c.rebuilds = w->clock.rebuilds;
     for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
@@ -44321,7 +44349,7 @@ DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
     memset(&c, 0, sizeof c);
     if (!s) return c;
     c.time = s->head.clock.time;
-    c.steps = s->head.clock.steps;
+    c.steps = demi_steps_done(&s->head);
     c.rebuilds = s->head.clock.rebuilds;
     c.border_moves = s->border_moves;
     for (k = 0; k < s->local; k++) c.migrated += s->slabs[k].migrated;

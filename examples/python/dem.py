@@ -4571,9 +4571,10 @@ class World(WorldBase):
         smaller radius, a body and a wall by that of the body, or a motion or desc.growth returns impossible values
         DEM_ERROR_FILE, DEM_ERROR_FORMAT an output cannot be written; its CSV has other columns DEM_ERROR_STOPPED an
         output stopped the run; desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance; or an
-        overlap is above desc.overlap_stop. The step is complete. DEM_ERROR_MEMORY The bodies may have moved already;
-        the step then counts as taken. The next call completes it first, here or in a world that has read a checkpoint
-        written meanwhile. The bits are those of a run without the interruption.
+        overlap is above desc.overlap_stop. The step is complete. DEM_ERROR_MEMORY The bodies and the time may have
+        moved already. The step counts (dem_world_steps_get) when it is complete: the next call completes it as its
+        first step, here or in a world that has read a checkpoint written meanwhile. The bits are those of a run
+        without the interruption.
         """
         self._ok(self._run(_lib.dem_world_step, self._at, steps) if self._context.kept else
             _lib.dem_world_step(self._at, steps))
@@ -4659,7 +4660,7 @@ class World(WorldBase):
 
     @property
     def steps(self):
-        """Returns the number of steps taken."""
+        """Returns the number of complete steps."""
         found = _lib.dem_world_steps_get(self._at)
         self._ok(0)
         return found
