@@ -215,6 +215,6 @@ int main(int argc, char **argv) {
     TEST("a refused request of memory in a step changes no bit of a run: joined boxes") {
         interrupts(IMPULSES | POLYHEDRA | JOINTS | PERIODIC, 50, 3);
     }
-    TEST("a repeated step makes the pruned list for which memory was refused") { prunes(); }
+    TEST("a repeated step makes the pruned list that had found no memory") { prunes(); }
     return test_end();
 }
