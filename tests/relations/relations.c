@@ -114,7 +114,7 @@ static void rel_page(const char *path) {
             "are in `tests/relations/`: features in `draw.h`, relations in `relate.h`.\n\nRelations of rounding allow a thousand times the "
             "difference that a disturbance of 1e-16 m has caused by then. A scene in which nothing touches is not counted. The "
             "command that wrote this page is `build/relations --scenes %llu --page docs/relations.md`.\n\n"
-            "Of %d scenes, %d ran with contacts and %d without. dem.h refused %d by name, and %d stopped with a message. %d relations "
+            "The program drew %d scenes, of which %d ran with contacts and %d without. dem.h refused %d by name, and %d stopped with a message. %d relations "
             "were checked, %d were broken.\n\n| relation | promise | holds | broken | does not apply |\n|---|---|---|---|---|\n",
             (unsigned long long)rel_all.last,
             rel_all.scenes + rel_all.still + rel_all.refused + rel_all.failed, rel_all.scenes, rel_all.still, rel_all.refused,
