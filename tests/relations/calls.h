@@ -6,7 +6,7 @@
 #include "codes.h"
 
 #define REL_N(fields) ((int)(sizeof (fields)/sizeof *(fields)))
-/* S, N: short for the natures; name is a member of struct A */
+/* A row of a field: name is a member of struct A; l, m, t are the powers of length, mass and time. */
 #define F(A, name, type, nature, l, m, t) {#name, REL_##type, REL_##nature, l, m, t, offsetof(A, name)}
 #define FI(A, name) F(A, name, INT, SCALAR, 0, 0, 0)
 #define FN(A, name) F(A, name, REAL, SCALAR, 0, 0, 0)
