@@ -17,7 +17,7 @@ static dem_world *frames_world(dem_vec3 gravity, double dt) {
 }
 /* Height above a floor after 40 steps, m, of a grain that falls on it; both move up at `lift`, m/s. */
 static double frames_bounce(double lift) {
-    dem_world *w = frames_world(at(0, 0, 0), 0x1p-12);
+    dem_world *w = frames_world(at(0, 0, 0), ldexp(1, -12));
     const dem_material m = scene_material(w, 1e7, 0.7, 0.3, 0);
     dem_motion up = DEM_MOTION;
     dem_wall floor;
@@ -27,8 +27,8 @@ static double frames_bounce(double lift) {
     up.kind = DEM_MOTION_TRANSLATING;
     up.velocity = at(0, 0, lift);
     dem_wall_motion_set(w, floor, &up);
-    grain = dem_sphere_add(w, m, DEM_R(1e-3), at(0, 0, 1e-3 + 0x1p-16));
-    scene_move(w, grain, at(0.1, 0, lift - 0x1p-5), at(0, 0, 0));
+    grain = dem_sphere_add(w, m, DEM_R(1e-3), at(0, 0, 1e-3 + ldexp(1, -16)));
+    scene_move(w, grain, at(0.1, 0, lift - ldexp(1, -5)), at(0, 0, 0));
     CHECK(dem_world_step(w, 40) == DEM_OK);
     high = (double)scene_state(w, grain).position.z - lift*dem_world_time_get(w);
     dem_world_destroy(w);

@@ -228,7 +228,7 @@ static int32_t rel_do_profile(dem_world *w, void *at) {
 static const rel_field rel_f_grains[] = {FREF(rel_a_wall, material), FW(vertices, REALS, POINT, 1, 0, 0),
                                          FW(radius, REAL, SCALAR, 1, 0, 0), FN(rel_a_wall, share)};
 static const rel_a_wall rel_wall_0 = {{0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 0}, 0, 0, 1, 1, 0, {0, 0}, {0, 0},
-                                      {0, 0}, {0, 0}, DEM_SIEVE_DESC};
+                                      {0, 0}, {0, 0}, DEM_ZERO};
 static int32_t rel_do_grains(dem_world *w, void *at) {
     rel_a_wall *a = (rel_a_wall *)at;
     return dem_wall_grains_add(w, a->material, a->vertices.count/3, a->vertices.at, a->radius, a->share).id;
@@ -253,7 +253,7 @@ static const rel_field rel_f_motion[] = {
     F(rel_a_motion, d.load, REAL, SCALAR, 1, 1, -2), F(rel_a_motion, d.travel, REAL, SCALAR, 1, 0, 0),
     F(rel_a_motion, d.function, CODE, FIXED, 0, 0, 0)
 };
-static const rel_a_motion rel_motion_0 = {{0}, {0, 0, 0}, DEM_MOTION};
+static const rel_a_motion rel_motion_0 = {{0}, {0, 0, 0}, DEM_ZERO};
 static int32_t rel_do_motion(dem_world *w, void *at) {
     rel_a_motion *a = (rel_a_motion *)at;
     return dem_wall_motion_set(w, a->wall, &a->d) == DEM_OK;
@@ -310,13 +310,6 @@ static const rel_field rel_f_cell[] = {
 };
 static int32_t rel_do_cell(dem_world *w, void *at) { return dem_cell_set(w, &((rel_a_later *)at)->d) == DEM_OK; }
 
-static const dem_feed_desc rel_feed_0 = DEM_FEED_DESC;
-static const dem_joint_desc rel_joint_0 = DEM_JOINT_DESC;
-static const dem_outlet_desc rel_outlet_0 = DEM_OUTLET_DESC;
-static const dem_material_desc rel_material_0 = DEM_MATERIAL_DESC;
-static const dem_field_desc rel_field_0 = DEM_FIELD_DESC;
-static const dem_cluster_desc rel_cluster_desc_0 = DEM_CLUSTER_DESC;
-
 /* makes: the letter of the variable that holds its result in a printed program; 0: none. desc: type and name of the
    default of `d`. text: the call, where $name is a value. */
 typedef struct rel_call {
@@ -337,7 +330,7 @@ enum { REL_WORLD, REL_MATERIAL, REL_PAIR, REL_ELLIPSOID, REL_CLUSTER, REL_POLYHE
 static int32_t rel_do_world(dem_world *w, void *at) { (void)w; (void)at; return 1; }        /* run.h creates it */
 static const rel_call rel_calls[REL_CALLS] = {
     C_(world, rel_a_world, 0, "", "", "dem_world_desc", "DEM_WORLD_DESC", "w = dem_world_create(&d)"),
-    C_(material, rel_a_material, &rel_material_0, "m", "dem_material", "dem_material_desc", "DEM_MATERIAL_DESC",
+    C_(material, rel_a_material, &DEM_MATERIAL_DESC, "m", "dem_material", "dem_material_desc", "DEM_MATERIAL_DESC",
        "dem_material_add(w, &d)"),
     C_(pair, rel_a_pair, 0, "", "", "dem_pair", "{0}", "dem_pair_set(w, $a, $b, &d)"),
     C_(ellipsoid, rel_a_ellipsoid, 0, "s", "dem_shape", "", "", "dem_shape_ellipsoid_add(w, $axes)"),
@@ -369,11 +362,11 @@ static const rel_call rel_calls[REL_CALLS] = {
     C_(motion, rel_a_motion, &rel_motion_0, "", "", "dem_motion", "DEM_MOTION", "dem_wall_motion_set(w, $wall, &d)"),
     C_(belt, rel_a_motion, &rel_motion_0, "", "", "", "", "dem_wall_surface_velocity_set(w, $wall, $velocity)"),
     C_(wall_remove, rel_a_motion, &rel_motion_0, "", "", "", "", "dem_wall_remove(w, $wall)"),
-    C_(joint, rel_a_joint, &rel_joint_0, "j", "dem_joint", "dem_joint_desc", "DEM_JOINT_DESC", "dem_joint_add(w, &d)"),
-    C_(feed, rel_a_feed, &rel_feed_0, "f", "dem_feed", "dem_feed_desc", "DEM_FEED_DESC", "dem_feed_add(w, &d)"),
-    C_(outlet, rel_a_outlet, &rel_outlet_0, "o", "dem_outlet", "dem_outlet_desc", "DEM_OUTLET_DESC",
+    C_(joint, rel_a_joint, &DEM_JOINT_DESC, "j", "dem_joint", "dem_joint_desc", "DEM_JOINT_DESC", "dem_joint_add(w, &d)"),
+    C_(feed, rel_a_feed, &DEM_FEED_DESC, "f", "dem_feed", "dem_feed_desc", "DEM_FEED_DESC", "dem_feed_add(w, &d)"),
+    C_(outlet, rel_a_outlet, &DEM_OUTLET_DESC, "o", "dem_outlet", "dem_outlet_desc", "DEM_OUTLET_DESC",
        "dem_outlet_add(w, &d)"),
-    C_(field, rel_a_field, &rel_field_0, "g", "dem_field", "dem_field_desc", "DEM_FIELD_DESC", "dem_field_add(w, &d)"),
+    C_(field, rel_a_field, &DEM_FIELD_DESC, "g", "dem_field", "dem_field_desc", "DEM_FIELD_DESC", "dem_field_add(w, &d)"),
     C_(gravity, rel_a_later, 0, "", "", "", "", "dem_world_gravity_set(w, $gravity)"),
     C_(cell, rel_a_later, 0, "", "", "dem_cell_desc", "DEM_CELL_DESC", "dem_cell_set(w, &d)")
 };

@@ -176,7 +176,7 @@ static void rel_text(const rel_scene *s, const rel_op *op) {
 /* Does a body need more than dem_sphere_add and dem_body_add? */
 static int rel_moves(const rel_op *op) {
     const rel_set *v = rel_given(op, "velocity", 8), *o = rel_given(op, "spin", 4);
-    static const double none[3];
+    static const double none[3] = {0, 0, 0};
     return (v && memcmp(v->v, none, sizeof none)) || (o && memcmp(o->v, none, sizeof none)) || rel_given(op, "scale", 5);
 }
 static void rel_body_text(const rel_scene *s, const rel_op *op) {

@@ -367,23 +367,23 @@ static int rel_mirrored(rel_case *c) {
     return rel_image_near(c, &m, axis == 0 ? "mirrored in x" : axis == 1 ? "mirrored in y" : "mirrored in z");
 }
 static int rel_translated(rel_case *c) {
-    static const char *const not[] = {"profile", 0};
+    static const char *const without[] = {"profile", 0};
     rel_map m = rel_same;
-    if (!c->ran || rel_has_any(c, not)) return REL_SKIPPED;
-    m.to[0] = 0x1p-6;
-    m.to[1] = -0x1p-7;
-    if (!rel_has(c, "planar")) m.to[2] = 0x1p-5;
+    if (!c->ran || rel_has_any(c, without)) return REL_SKIPPED;
+    m.to[0] = ldexp(1, -6);
+    m.to[1] = -ldexp(1, -7);
+    if (!rel_has(c, "planar")) m.to[2] = ldexp(1, -5);
     return rel_image_near(c, &m, "translated");
 }
 static int rel_galilei(rel_case *c) {
-    static const char *const not[] = {"translating", "rotating", "oscillating", "user motion", "servo", "fixed body", "feed",
+    static const char *const without[] = {"translating", "rotating", "oscillating", "user motion", "servo", "fixed body", "feed",
         "outlet", "rail", "force", "body force", "cell", "periodic", "periodic floor", "point joint", "hinge", "motor",
         "average", "wall removed", "kick", 0};
     const double V[3] = {0.125, -0.0625, rel_has(c, "planar") ? 0 : 0.25};
     const rel_how how = {0};
     rel_map m = rel_same;
     int i, k;
-    if (!c->ran || rel_has_any(c, not)) return REL_SKIPPED;
+    if (!c->ran || rel_has_any(c, without)) return REL_SKIPPED;
     rel_copy(&rel_image, c->s);
     for (i = 0; i < c->s->count; i++) {
         rel_op *op = &rel_image.op[i];
@@ -552,11 +552,11 @@ static int rel_several(rel_case *c) {
 }
 /* ---- sums ---- */
 static int rel_momentum(rel_case *c) {
-    static const char *const not[] = {"gravity", "tilted gravity", "gravity later", "force", "body force", "fixed body", "rail",
+    static const char *const without[] = {"gravity", "tilted gravity", "gravity later", "force", "body force", "fixed body", "rail",
         "feed", "outlet", "removal", "kick", "cell", "servo", "growth", "new radius", "point joint", "hinge", "motor", 0};
     int k, e;
     double all = 0;
-    if (!c->ran || rel_has_any(c, not) || rel_walls(c->s) || !c->base.contacts) return REL_SKIPPED;
+    if (!c->ran || rel_has_any(c, without) || rel_walls(c->s) || !c->base.contacts) return REL_SKIPPED;
     for (e = 0; e < 3; e++) all = fmax(all, fabs(c->base.mark[0].momentum[e]));
     for (k = 1; k < c->base.marks; k++)
         for (e = 0; e < 3; e++)

@@ -66,8 +66,8 @@ static int rel_below(rel_rng *r, int n) { return (int)(rel_next(r)%(uint64_t)n);
 /* A number between a and b with few digits, so that printed programs can be read. */
 static double rel_between(rel_rng *r, double a, double b) {
     char text[32];
-    snprintf(text, sizeof text, "%.3g", a + (b - a)*(double)(rel_next(r) >> 11)*0x1p-53);
+    snprintf(text, sizeof text, "%.3g", a + (b - a)*(double)(rel_next(r) >> 11)*ldexp(1, -53));
     return strtod(text, 0);
 }
-static int rel_chance(rel_rng *r, double p) { return (double)(rel_next(r) >> 11)*0x1p-53 < p; }
+static int rel_chance(rel_rng *r, double p) { return (double)(rel_next(r) >> 11)*ldexp(1, -53) < p; }
 #endif
