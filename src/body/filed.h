@@ -102,6 +102,29 @@ static int demi_kept_part(const dem_world *w, int d, const demi_kept *end, const
     while (o < end && demi_kept_later(o) && o->wall != c->wall);
     return o < end && demi_kept_later(o) ? (int)(o - now) : from;
 }
+/* Lets each of the four points c[0] .. c[3] of a pressure continue the old point that lies where it
+   does. This has another number if the direction in which the pressure is spread most has reversed
+   in this step, or has turned by a right angle (demi_patch_along). Springs that pass to the
+   opposite point would reverse the moment of friction about the normal. */
+static void demi_kept_turn(const dem_world *w, int d, demi_kept *c) {
+    static const unsigned char turned[4][4] = {{0, 1, 2, 3}, {2, 0, 3, 1}, {3, 2, 1, 0},
+                                               {1, 3, 0, 2}};
+    const demi_kept *now = demi_kept_of(w, d);
+    dem_vec3 is[4] = DEM_ZERO, was[4] = DEM_ZERO;
+    dem_real same, right;
+    int from[4], k, turns;
+    if (!demi_response_is(w, DEMI_PRESSING) || demi_kept_later(c)) return;
+    for (k = 0; k < 4; k++) {
+        if (c[k].from < 0 || now[c[k].from].corners != 4) return;
+        from[c[k].corner] = c[k].from;
+        is[c[k].corner] = c[k].more.spread;
+        was[c[k].corner] = now[c[k].from].more.spread;
+    }
+    same = demi_dot(is[0], was[0]) + demi_dot(is[1], was[1]);
+    right = demi_dot(is[1], was[0]) - demi_dot(is[0], was[1]);
+    turns = DEMI_ABS(right) > DEMI_ABS(same) ? (right > 0 ? 1 : 3) : same < 0 ? 2 : 0;
+    for (k = 0; k < 4 && turns; k++) c[k].from = from[turned[turns][c[k].corner]];
+}
 /* The weight of friction of all parts of a contact. */
 DEM_INLINE dem_real demi_kept_whole(const demi_kept *c) {
     return c->odd && c->more.part > 0 ? c->grip/c->more.part : c->grip;

@@ -350,6 +350,7 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
     }
     c->arm_a = demi_add(c->arm_a, to);
     c->arm_b = demi_add(c->arm_b, to);
+    demi_kept_turn(w, d, c);
     return 1;
 }
 /* Splits contact c of two polyhedra into the points of its contact manifold `spots`. On entry
@@ -628,6 +629,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
         if (demi_kept_later(c)) c->from = demi_kept_part(w, d, &old[olds], c);
         else if (c->from < 0 && olds)
             c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
+        if (c->corner == 3) demi_kept_turn(w, d, c - 3);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(w, old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* stays in the hole until through */

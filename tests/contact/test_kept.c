@@ -200,6 +200,38 @@ static void no_law(const dem_contact *c, dem_real *memory, dem_contact_force *f)
     f->normal = 0;
 }
 
+/* Extremes of the angle, rad, by which a bar that lies on a fixed block oscillates about the normal on the springs of its
+   friction; the block is turned by `angle` and half a turn, below all of the bar's face. */
+static void twist(double angle, double *least, double *most) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_body_state s;
+    dem_world *w;
+    dem_material m;
+    dem_body block, bar;
+    int i;
+    desc.gravity = at(0, 0, -9.81);
+    desc.threads = 1;
+    desc.dt = DEM_R(4e-6);
+    w = dem_world_create(&desc);
+    m = scene_material(w, 1e7, 0.5, 0.8, 0);
+    block = dem_body_add(w, m, scene_box(w, 0.04, 0.04, 0.01), at(0, 0, -0.005),
+                         dem_quat_about(at(0, 0, 1), (dem_real)(3.14159265358979 + angle)));
+    s = scene_state(w, block);
+    s.fixed = 1;
+    CHECK_EQ(dem_body_set(w, block, &s), DEM_OK);
+    bar = dem_body_add(w, m, scene_box(w, 0.02, 0.01, 0.01), at(0, 0, 0.00499), dem_quat_make(1, 0, 0, 0));
+    CHECK_EQ(dem_world_run(w, 0.05, 0, 0), DEM_OK);
+    scene_move(w, bar, at(0, 0, 0), at(0, 0, 0.3));
+    *least = *most = 0;
+    for (i = 0; i < 3000; i++) {
+        CHECK_EQ(dem_world_step(w, 1), DEM_OK);
+        s = scene_state(w, bar);
+        *least = fmin(*least, 2*(double)s.orientation.z);
+        *most = fmax(*most, 2*(double)s.orientation.z);
+    }
+    dem_world_destroy(w);
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("over 10,000 links form and break in a gas: formed less broken is the number in force at any time") {
@@ -437,6 +469,17 @@ int main(int argc, char **argv) {
             CHECK_STR(dem_world_error_get(w), "at most 0.1 m");
             CHECK_EQ(dem_bonds_make(w, DEM_R(0.09), bond_one, 0), 2);
             dem_world_destroy(w);
+        }
+    }
+    TEST("a bar twists on its friction springs alike however the block beneath it is turned") {
+        double least, most, low, high;
+        int i;
+        twist(0.3, &low, &high);
+        CHECK(low < -1e-4 && high > 2e-4);
+        for (i = -1; i < 3; i++) {
+            twist(i*5e-5, &least, &most);
+            CHECK_NEAR(least, low, (wide ? 1e-3 : 0.1)*(high - low));
+            CHECK_NEAR(most, high, (wide ? 1e-3 : 0.1)*(high - low));
         }
     }
     return test_end();
