@@ -9,6 +9,14 @@
    w->bodies, and writes the speeds of rotation of work groups (turn, turn_rate, turn_speed).
    >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
    --------------------------------------------------------------------------------------------- */
+/* True if forces depend on spins. demi_turns: also if bodies have orientations. Otherwise spins
+   stay as they are: torques of contacts are round-off. */
+static int demi_spins(const dem_world *w) {
+    return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
+           w->effects.rolling != DEM_ROLLING_NONE || w->effects.twisting;
+}
+static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
+
 typedef struct demi_lane {           /* translation or rotation of one body */
     dem_real *v, *half, *f;          /* velocity, half-step velocity, force: 4 reals each */
     dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces */
@@ -165,11 +173,12 @@ static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (vo
 /* Second half kick, for schemes whose velocities are at the half step. */
 static void demi_finish_halves(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->clock.half_kick;
+    const int turning = demi_turns(w);
     int i;
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
         demi_finish_half(&b, h);
-        demi_finish_half(&s, h);
+        if (turning) demi_finish_half(&s, h);
     }
 }
 /* For the ledger: stores in `late` by how much the velocities used by contact laws were too low,
@@ -194,12 +203,13 @@ static void demi_late_note(dem_world *w, int begin, int end) {
 static void demi_prime_body(dem_world *w, int i) {
     const dem_real dt = w->clock.dt, h = dt/2;
     const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+    const int turning = demi_turns(w);
     int k;
     for (k = 0; k < 3; k++) {
         const dem_real a = b.f[k]*b.inv + b.g[k];
         b.half[k] = b.v[k] - a*h;
         if (w->bodies.backward) w->bodies.last_pos[4*i + k] = w->bodies.pos[4*i + k] - b.half[k]*dt;
-        s.half[k] = s.v[k] - s.f[k]*s.inv*h;
+        s.half[k] = turning ? s.v[k] - s.f[k]*s.inv*h : s.v[k];
     }
     if (w->bodies.shaped && w->bodies.shape[i])
         demi_put(w->bodies.angular + 4*i,

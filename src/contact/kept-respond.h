@@ -547,7 +547,8 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
     demi_kept *c = t->contact[q];
     const dem_vec3 force = demi_row(t->rows.force, q);
     demi_force_add(w->bodies.force + 4*c->a, force);
-    demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
+    if (demi_turns(w))                          /* else nothing sets torques to 0 in a step */
+        demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
     if (c->b >= 0) {                            /* several contacts may share a slot */
         dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
         c->force = force;

@@ -156,12 +156,6 @@ static void demi_skin_choose(dem_world *w) {
 static int demi_own(const dem_world *w) {
     return w->desc.law || w->desc.body_reals_fn || w->desc.force || w->desc.body_force;
 }
-/* True if forces depend on spins. demi_turns: also if bodies have orientations. */
-static int demi_spins(const dem_world *w) {
-    return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
-           w->effects.rolling != DEM_ROLLING_NONE || w->effects.twisting;
-}
-static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
 /* Returns the number of work groups: 1, 2, 4 or a multiple of 8, which divides evenly among most
    numbers of threads. It depends only on the scene, so bits do not depend on threads. shaped: the
