@@ -140,6 +140,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->effects.rolling = from->effects.rolling;
     w->effects.sticks = from->effects.sticks;
     w->effects.twisting = from->effects.twisting;
+    w->memory_stride = from->memory_stride;     /* before its first list, too */
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     w->events.n.on = from->events.n.on;

@@ -235,6 +235,7 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
         o->kept = 0;
     }
     w->domains[0].kept = total;
+    w->domain_count = DEMI_MAX(w->domain_count, 1);        /* of a world without a list so far */
     for (d = 1; d <= DEMI_DOMAINS; d++) w->kept_first[d] = total + come->contacts;
     return 1;
 }

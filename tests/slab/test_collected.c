@@ -138,5 +138,54 @@ int main(int argc, char **argv) {
         CHECK(alike(world[0], world[1], resting));
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
+    TEST("slabs collected before their first step have the history of every contact, and so has a file of that world") {
+        const char *path = "build/tmp/collected.dem";
+        dem_slabs_desc d = DEM_SLABS_DESC;
+        dem_body grain;
+        dem_wall floor;
+        dem_world *from = slipping(0, 0.999e-3, &grain, &floor), *to[2];
+        dem_slabs *slabs;
+        int k;
+        for (k = 0; k < 2; k++) to[k] = slipping(0, 0.999e-3, &grain, &floor);
+        go(from, 0, 20);
+        d.count = 1;
+        slabs = dem_slabs_create(from, &d);
+        CHECK_EQ(dem_slabs_collect(slabs, to[0]), DEM_OK);
+        dem_slabs_destroy(slabs);
+        CHECK_EQ(dem_world_hash_get(to[0]), dem_world_hash_get(from));
+        CHECK_EQ(dem_checkpoint_write(to[0], path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(to[1], path), DEM_OK);
+        CHECK_EQ(dem_world_hash_get(to[1]), dem_world_hash_get(from));
+        remove(path);
+        for (k = 0; k < 2; k++) dem_world_destroy(to[k]);
+        dem_world_destroy(from);
+    }
+    TEST("a grain that changes slab in the first list keeps the springs of its contact with the floor") {
+        dem_world *world[2];
+        dem_body grain[2];
+        dem_material stuff = {1};
+        dem_wall floor;
+        double was, is;
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_slabs_desc d = DEM_SLABS_DESC;
+            dem_slabs *slabs;
+            world[k] = slipping(0, 0.999e-3, &grain[0], &floor);
+            grain[1] = dem_sphere_add(world[k], stuff, DEM_R(1e-3), at(-0.0021, 0, 0.1));
+            go(world[k], 0, 20);
+            d.count = 3;
+            scene_move(world[k], grain[0], at(0, 0, 0), at(0, 0, 0));      /* its spring is what moves it */
+            slabs = k ? dem_slabs_create(world[k], &d) : 0;
+            CHECK_EQ(k ? dem_slabs_step(slabs, 1) : dem_world_step(world[k], 1), DEM_OK);
+            if (!k) continue;
+            CHECK_EQ(dem_slabs_collect(slabs, world[k]), DEM_OK);
+            dem_slabs_destroy(slabs);
+        }
+        was = (double)scene_state(world[0], grain[0]).velocity.x;
+        is = (double)scene_state(world[1], grain[0]).velocity.x;
+        CHECK(was < -1e-6 || was > 1e-6);
+        CHECK_NEAR(is, was, 1e-6*fabs(was));
+        for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+    }
     return test_end();
 }
