@@ -394,7 +394,7 @@ static void demi_kept_move(dem_world *w, const int *first) {
             }
             w->kept_next[e++] = c;
         }
-        w->domains[d].kept = 0;
+        w->domains[d].kept = w->domains[d].kept_walls = 0;
         w->domains[d].coefs = 0;                /* materials may have changed */
     }
     memcpy(w->kept_first, first, sizeof w->kept_first);
@@ -409,6 +409,8 @@ static void demi_kept_move(dem_world *w, const int *first) {
         }
     for (k = 0; k < e; k++) {
         const demi_kept *c = &w->kept_next[k];
-        demi_kept_of(w, demi_domain_of(w, c->a))[w->bodies.order[c->a]++] = *c;
+        d = demi_domain_of(w, c->a);
+        demi_kept_of(w, d)[w->bodies.order[c->a]++] = *c;
+        w->domains[d].kept_walls += c->b < 0 && (c->overlap > 0 || c->row < 0);    /* as respond */
     }
 }

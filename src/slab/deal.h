@@ -371,6 +371,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 typedef struct demi_slab_sums {
     int32_t index, walls;          /* of the slab; number of walls */
     uint64_t size, left;           /* bytes of the report; grains that outflow and outlets took */
+    int64_t contacts;              /* of bodies, in the last step */
     demi_booked booked;
 } demi_slab_sums;
 
@@ -386,6 +387,7 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     sums.walls = w->wall_count;
     sums.left = w->bodies.balance.left;
     sums.booked = w->booked;
+    for (i = 0; i < w->domain_count; i++) sums.contacts += w->domains[i].contacts;
     if (w->stage.list_valid) demi_met_look(w, sums.booked.met);
     ok = demi_message_put(h, out, &sums, sizeof sums);
     for (i = 0; i < w->wall_count && ok; i++)
@@ -442,6 +444,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     demi_rows_add(demi_booked_rows, &w->booked, &sums->booked);
     demi_crushed_add(&w->booked.crushed, &sums->booked.crushed);
     w->bodies.balance.left += sums->left;
+    w->domains[0].contacts += (int)sums->contacts;
     for (i = 0; i < sums->walls; i++) {
         dem_wall_loads part;
         demi_unpack(&from, &part, sizeof part);
@@ -606,7 +609,8 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         w->bodies.slot_count = i;
         return demi_no_memory(h, call);
     }
-    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;  /* those of the slabs take over */
+    for (k = 0; k < DEMI_DOMAINS; k++)          /* those of the slabs take over */
+        w->domains[k].kept = w->domains[k].contacts = 0;
     w->filed.count = 0;
     memset(w->filed.start, 0, ((size_t)w->filed.rows + 2)*sizeof(int32_t));
     memset(*seen, 0, (size_t)s->slots + 1);

@@ -187,5 +187,39 @@ int main(int argc, char **argv) {
         CHECK_NEAR(is, was, 1e-6*fabs(was));
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
+    TEST("a collected world counts the contacts of the slabs' last step, not those of its own") {
+        dem_slabs_desc d = DEM_SLABS_DESC;
+        for (d.count = 1; d.count < 4; d.count++) {
+            dem_world *world[3];                   /* one world; the one dealt to slabs; one that collects */
+            dem_material stuff = {1};
+            dem_slabs *slabs;
+            dem_body grain;
+            dem_wall floor;
+            int k;
+            for (k = 0; k < 3; k++) {
+                world[k] = slipping(0, k < 2 ? 0.999e-3 : 0.01, &grain, &floor);
+                dem_sphere_add(world[k], stuff, DEM_R(1e-3), at(0.00199, 0, k < 2 ? 0.999e-3 : 0.01));
+                dem_sphere_add(world[k], stuff, DEM_R(1e-3), at(0.1, 0, k < 2 ? 0.999e-3 : 0.02));
+                go(world[k], 0, 2);
+            }
+            CHECK_EQ(dem_counters_get(world[2]).wall_contacts, 0);
+            go(world[0], 0, 2);
+            slabs = dem_slabs_create(world[1], &d);
+            CHECK_EQ(dem_slabs_step(slabs, 2), DEM_OK);
+            CHECK_EQ(dem_slabs_collect(slabs, world[2]), DEM_OK);
+            dem_slabs_destroy(slabs);
+            CHECK_EQ(dem_candidates_rebuild(world[2]), DEM_OK);
+            CHECK_EQ(dem_counters_get(world[0]).contacts, 1);
+            CHECK_EQ(dem_counters_get(world[0]).wall_contacts, 3);
+            CHECK_EQ(dem_counters_get(world[2]).contacts, 1);
+            CHECK_EQ(dem_counters_get(world[2]).wall_contacts, 3);
+            slabs = dem_slabs_create(world[0], &d);        /* it is what it was before, too */
+            CHECK_EQ(dem_slabs_collect(slabs, world[2]), DEM_OK);
+            dem_slabs_destroy(slabs);
+            CHECK_EQ(dem_candidates_rebuild(world[2]), DEM_OK);
+            CHECK_EQ(dem_counters_get(world[2]).wall_contacts, 3);
+            for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
+        }
+    }
     return test_end();
 }
