@@ -272,7 +272,10 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     const dem_vec3 w3 = demi_v(a.x*(w2.y*w.z + 2*w1.y*w1.z + w.y*w2.z),
                                a.y*(w2.z*w.x + 2*w1.z*w1.x + w.z*w2.x),
                                a.z*(w2.x*w.y + 2*w1.x*w1.y + w.x*w2.y));
-    const dem_real ll = demi_dot(L, L);
+    /* products of angular momenta would underflow in single precision: angles per step */
+    const dem_real unit = DEMI_SINGLE ? inv.x*h : 1;
+    const dem_vec3 turn = demi_scale(L, unit);
+    const dem_real ll = demi_dot(turn, turn);
     dem_vec3 mean, end, g, c, magnus;
     end = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(1.0/3))), h*h*DEM_R(0.5));
     mean = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(0.25))), h*h*DEM_R(1.0/6));
@@ -280,8 +283,8 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     mean = demi_add(w, demi_add(demi_scale(w1, h*DEM_R(0.5)), mean));
     magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
     *q = dem_quat_multiply(*q, demi_quat_exp(demi_scale(demi_add(mean, magnus), h)));
-    end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
-    g = dem_quat_unrotate(*q, L);
+    end = demi_scale(demi_v(I.x*end.x, I.y*end.y, I.z*end.z), unit);
+    g = dem_quat_unrotate(*q, turn);
     c = demi_scale(demi_cross(end, g), ll > DEMI_TINY ? DEM_R(0.5)/ll : 0);
     *q = demi_quat_again(dem_quat_multiply(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
