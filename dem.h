@@ -23313,7 +23313,7 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
        TURNED   polyhedron on a wall, soft contacts: the nearest normal within 45 degrees, of the
                 same element and corner (round walls, wires and holes are one element all around)
        NEAREST  polyhedra, rigid contacts: the nearest point of the same pair or wall, with a
-                normal within about 18 degrees, that no earlier new contact continues
+                normal within about 18 degrees, that no new contact nearer to it continues
        SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
 enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
 /* The number of the surface that contact c is with. */
@@ -23354,16 +23354,21 @@ DEM_INLINE int demi_kept_one(const dem_world *w, const demi_kept *a, const demi_
     return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 &&
         demi_surface_number(w, a->wall) == demi_surface_number(w, b->wall));
 }
+/* Squared distance of the points of two contacts of one body, m2, as seen from its centre. */
+DEM_INLINE dem_real demi_kept_off2(const demi_kept *a, const demi_kept *b) {
+    const dem_vec3 way = demi_sub(a->arm_a, b->arm_a);
+    return demi_dot(way, way);
+}
 /* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
-   with this wall; for NEAREST only those up to c. */
+   with this wall. */
 static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int olds,
                           const demi_kept *fresh, int freshs, const demi_kept *c,
                           enum demi_fit how) {
     const int first = (int)(old - demi_kept_of(w, d));
     dem_real most = DEMI_FAR_OFF;
-    int i, best = -1;
+    int i, k, best = -1;
     for (i = 0; i < olds; i++) {
-        const demi_kept *o = &old[i], *f = fresh;
+        const demi_kept *o = &old[i];
         dem_real fit = demi_dot(o->normal, c->normal);
         if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
             o->part_a != c->part_a || o->part_b != c->part_b ||
@@ -23371,16 +23376,31 @@ static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int o
             (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
             (o->element != c->element && how == DEMI_FIT_TURNED) || demi_kept_later(o)) continue;
         if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
-        if (how == DEMI_FIT_NEAREST) {
-            const dem_vec3 way = demi_sub(o->arm_a, c->arm_a);
-            while (f < c && f->from != first + i) f++;
-            fit = f < c ? DEMI_FAR_OFF : -demi_dot(way, way);
-        }
+        if (how == DEMI_FIT_NEAREST) fit = -demi_kept_off2(o, c);
         if (!(fit > most)) continue;
+        for (k = 0; how == DEMI_FIT_NEAREST && k < freshs; k++)
+            if (fresh[k].from == first + i && !(demi_kept_off2(o, &fresh[k]) > -fit)) break;
+        if (how == DEMI_FIT_NEAREST && k < freshs) continue;
         most = fit;
         best = first + i;
     }
     return best;
+}
+/* Finds which old contacts `count` new ones of one pair or wall continue, by DEMI_FIT_NEAREST. A
+   new contact takes an old one from another that is farther from it; that one looks again. So the
+   order of contacts changes nothing. */
+static void demi_kept_nearest(const dem_world *w, int d, const demi_kept *old, int olds,
+                              demi_kept *fresh, int count) {
+    int i, k, next;
+    for (i = 0; i < count; i++) fresh[i].from = -1;
+    for (i = 0; i < count; i++)
+        for (k = i; k < count; k = next) {
+            const int from = demi_kept_best(w, d, old, olds, fresh, count, &fresh[k],
+                                            DEMI_FIT_NEAREST);
+            for (next = 0; next < count && (from < 0 || fresh[next].from != from); next++);
+            if (next < count) fresh[next].from = -1;
+            fresh[k].from = from;
+        }
 }
 /* Similarity t of two contacts of the same pair: 1 if their normals are within 25 degrees, 0 beyond
    45 degrees, smooth in between. *rate receives its derivative with respect to the cosine of that
@@ -23583,6 +23603,7 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
                             int olds) {
     const dem_vec3 base_a = c->arm_a, base_b = c->arm_b;
     const dem_real thin = DEMI_MIN(demi_part_thin(p), demi_part_thin(q));
+    const int pressing = demi_response_is(w, DEMI_PRESSING);
     int k;
     c->share /= (dem_real)spots->count;
     c->corners = spots->count;
@@ -23596,10 +23617,9 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
         at->arm_b = demi_add(base_b, x);
         at->overlap = (dem_real)-spots->gap[k];
         at->deep = at->overlap/thin;
-        at->from = demi_response_is(w, DEMI_PRESSING)
-            ? demi_kept_same(w, d, old, olds, at)
-            : demi_kept_best(w, d, old, olds, c, k + 1, at, DEMI_FIT_NEAREST);
+        if (pressing) at->from = demi_kept_same(w, d, old, olds, at);
     }
+    if (!pressing) demi_kept_nearest(w, d, old, olds, c, spots->count);
     return 1;
 }
 /* Appends a contact of part i of body a with part j of body b. send: as in demi_kept. Returns null
@@ -23842,11 +23862,12 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
                                 demi_scale(c->normal, c->corners ? c->overlap/2 : 0));
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
-    for (i = 0, c = fresh; i < count; i++, c++)
-        c->from = !shaped || !c->corners ? demi_kept_same(w, d, old, olds, c)
-            : demi_kept_best(w, d, old, olds, fresh, count, c,
-                             demi_response_is(w, DEMI_PRESSING) ? DEMI_FIT_TURNED
-                                                                : DEMI_FIT_NEAREST);
+    if (shaped && count && fresh->corners && !demi_response_is(w, DEMI_PRESSING))
+        demi_kept_nearest(w, d, old, olds, fresh, count);
+    else
+        for (i = 0, c = fresh; i < count; i++, c++)
+            c->from = !shaped || !c->corners ? demi_kept_same(w, d, old, olds, c)
+                : demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_TURNED);
     for (i = 0, c = fresh; i < count; i++, c++) {
         if (demi_kept_later(c)) c->from = demi_kept_part(w, d, &old[olds], c);
         else if (c->from < 0 && olds)
@@ -25688,6 +25709,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
         o.arm_b = k->arm_b;
         o.r_eff = k->r_eff;
         o.size = w->bodies.pos[4*k->a + 3];
+        if (k->b >= 0) o.size = DEMI_MIN(o.size, w->bodies.pos[4*k->b + 3]);
         o.material = k->b < 0 ? w->walls[k->wall].material : w->bodies.material[k->b] - 1;
         o.memory = k->memory;
         o.stride = 1;
@@ -25734,15 +25756,13 @@ static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, co
 }
 /* Returns the friction coefficient of a contact with this slip (m/s). Static friction acts on
    contacts that did not slide in the last step. A contact without normal impulse in the last step
-   begins now; it slides from the beginning if its slip exceeds round-off and the speed that gravity
-   adds in a step (`rest`, m/s). Otherwise static friction would act during a whole impact, in a
-   number of impacts that would depend on how early contacts are detected. */
-static dem_real demi_impulse_friction(const dem_world *w, const dem_pair *pair,
-                                      const demi_spot *o, dem_vec3 slip, dem_real rest) {
-    const dem_real slow = rest + (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10))*
-        (dem_real)w->booked.speed_max;
+   begins now; it slides from the beginning if its slip exceeds `rest`, m/s. Otherwise static
+   friction would act during a whole impact, in a number of impacts that would depend on how early
+   contacts are detected. */
+static dem_real demi_impulse_friction(const dem_pair *pair, const demi_spot *o, dem_vec3 slip,
+                                      dem_real rest) {
     const int begins = !(o->memory[6*o->stride] > 0);
-    const int slides = begins ? demi_dot(slip, slip) > slow*slow
+    const int slides = begins ? demi_dot(slip, slip) > rest*rest
         : o->memory[DEMI_IMPULSE_SLIDES*o->stride] > 0;
     return slides ? pair->friction : DEMI_MAX(pair->friction, pair->friction_static);
 }
@@ -25751,7 +25771,9 @@ static dem_real demi_impulse_friction(const dem_world *w, const dem_pair *pair,
    plane. Cohesion begins at gaps below a millionth of the radius and lasts up to a thousandth. */
 static void demi_impulses_lay(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
-    const dem_real dt = s->dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
+    /* bodies are at rest up to the speed that gravity adds in a step, and to round-off */
+    const dem_real dt = s->dt, rest = (dem_real)demi_length(w->desc.gravity)*dt +
+        (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10))*(dem_real)w->booked.speed_max;
     const int shaped = w->bodies.shaped > 0;
     demi_domain *domain = &w->domains[d];
     int i;
@@ -25789,8 +25811,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         }
         before = demi_impulse_before(w, c);
         closing = demi_dot(before, o.normal);
-        mu = demi_impulse_friction(w, pair, &o, demi_sub(before, demi_scale(o.normal, closing)),
-                                   rest);
+        mu = demi_impulse_friction(pair, &o, demi_sub(before, demi_scale(o.normal, closing)), rest);
         if (shaped) demi_brings_bound(w, &g, mu);
         c->mu = mu;
         c->gn = g.n;
@@ -27219,6 +27240,25 @@ static demi_solved demi_solve_jacobi(dem_world *w, int most) {
     return o;
 }
 
+/* Lets go of contacts that do not push, but of which a solver that takes parts of steps has left a
+   remainder of an impulse. */
+static void demi_impulses_release(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int convex = w->desc.cone == DEM_CONE_CONVEX, shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        dem_real push;
+        dem_vec3 slip;
+        s->vectors[i] = demi_v(0, 0, 0);
+        demi_impulse_wanted(c, demi_impulse_velocity(s, c, shaped), &push, &slip, convex);
+        if (push > 0 || !(c->push > 0)) continue;
+        s->vectors[i] = demi_scale(demi_add(demi_scale(c->normal, c->push), c->slip), -1);
+        c->push = 0;
+        c->slip = demi_v(0, 0, 0);
+    }
+}
+
 /* --- gradients --- */
 
 /* Columns of s->vectors, one vector per contact: BY: change of the impulse. X, UX: impulse and
@@ -27427,9 +27467,11 @@ static demi_solved demi_solve_gradient(dem_world *w, int most,
         demi_solved_tell(s, &o, sums);
     } while (++o.sweeps < most && demi_solved_open(w, &o));
     memcpy(s->movers, s->movers + movers, movers*sizeof *s->movers);
-    for (i = 0; i < s->count; i++)
+    for (i = 0; i < s->count; i++) {
+        s->contacts[i].bias = demi_vector_at(s, DEMI_GIVEN, i)->x;
         *demi_vector_at(s, DEMI_BY, i) = demi_sub(demi_impulse_vector(s->contacts + i),
                                                *demi_vector_at(s, DEMI_BEGAN, i));
+    }
     demi_colours_all(w, demi_vectors_apply);
     return o;
 }
@@ -27505,11 +27547,13 @@ static int demi_impulses_room(dem_world *w) {
 }
 /* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
    this step and are then discarded, so they add no kinetic energy. They do not rotate bodies. A
-   contact's own lift, kg m/s, is an impulse >= 0, found by projected Gauss-Seidel. */
-enum { DEMI_LIFTS = 5 };                        /* sweeps */
+   contact's own lift, kg m/s, is an impulse >= 0, found by projected Gauss-Seidel, to the tolerance
+   of the velocities. */
+enum { DEMI_LIFTS = 5 };                        /* least number of sweeps, if anything is lifted */
 #define DEMI_LIFTED DEM_R(0.2)                  /* part of an overlap corrected per step */
 static void demi_impulses_lift(dem_world *w, int index) {
     demi_solver *s = &w->solver;
+    demi_run_sums sums = {0, 0, 0, 0};
     int i, end;
     for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
         const demi_impulse *c = s->contacts + i;
@@ -27525,7 +27569,18 @@ static void demi_impulses_lift(dem_world *w, int index) {
         beside->lift = lift;
         if (ia > 0) demi_put(la, demi_sub(a, demi_scale(n, by*ia)));
         if (lb) demi_put(lb, demi_add(b, demi_scale(n, by*ib)));
+        demi_sums_add(&sums, by/beside->mass*(by/beside->mass));
     }
+    s->runs[s->run + index] = sums;
+}
+/* Finds the lifts of all bodies, in at most `most` sweeps. */
+static void demi_lifts_solve(dem_world *w, int most) {
+    demi_solved o = {0, 0, 0};
+    do {
+        demi_colours_all(w, demi_impulses_lift);
+        demi_solved_tell(&w->solver, &o, demi_runs_sum(&w->solver));
+    } while (o.worst > 0 && (++o.sweeps < DEMI_LIFTS ||
+                             (o.sweeps < most && demi_solved_open(w, &o))));
 }
 /* True if no contact and no joint acts on body i. */
 static int demi_mover_free(const dem_world *w, int i) {
@@ -27739,6 +27794,10 @@ static void demi_impulses(dem_world *w) {
         for (i = 0; i < DEMI_TAMINGS && demi_impulses_tame(w, i == DEMI_TAMINGS - 1); i++)
             solved = demi_solvers[w->desc.solver].solve(w, most);
     }
+    if (demi_solvers[w->desc.solver].vectors && !demi_solved_open(w, &solved)) {
+        demi_runs_all(w, demi_impulses_release);
+        demi_colours_all(w, demi_vectors_apply);
+    }
     w->booked.sweeps = solved.sweeps;
     w->booked.residual = solved.worst;
     w->booked.residual_rms = solved.rms;
@@ -27756,7 +27815,7 @@ static void demi_impulses(dem_world *w) {
     w->booked.due[3] = 0;
     w->booked.due[4] = demi_sum_energy(w, DEMI_E_FORCE);
     if (!w->stage.forces_valid) return;         /* forces only, no step */
-    for (i = 0; i < DEMI_LIFTS; i++) demi_colours_all(w, demi_impulses_lift);
+    demi_lifts_solve(w, most);
     for (i = 0; i < w->bodies.count; i++) {
         const dem_vec3 way = demi_scale(demi_at(s->lifts + 4*i), s->dt);
         demi_force_add(w->bodies.last_pos + 4*i, way);

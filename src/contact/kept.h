@@ -90,7 +90,7 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
        TURNED   polyhedron on a wall, soft contacts: the nearest normal within 45 degrees, of the
                 same element and corner (round walls, wires and holes are one element all around)
        NEAREST  polyhedra, rigid contacts: the nearest point of the same pair or wall, with a
-                normal within about 18 degrees, that no earlier new contact continues
+                normal within about 18 degrees, that no new contact nearer to it continues
        SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
 enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
 /* The number of the surface that contact c is with. */
@@ -131,16 +131,21 @@ DEM_INLINE int demi_kept_one(const dem_world *w, const demi_kept *a, const demi_
     return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 &&
         demi_surface_number(w, a->wall) == demi_surface_number(w, b->wall));
 }
+/* Squared distance of the points of two contacts of one body, m2, as seen from its centre. */
+DEM_INLINE dem_real demi_kept_off2(const demi_kept *a, const demi_kept *b) {
+    const dem_vec3 way = demi_sub(a->arm_a, b->arm_a);
+    return demi_dot(way, way);
+}
 /* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
-   with this wall; for NEAREST only those up to c. */
+   with this wall. */
 static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int olds,
                           const demi_kept *fresh, int freshs, const demi_kept *c,
                           enum demi_fit how) {
     const int first = (int)(old - demi_kept_of(w, d));
     dem_real most = DEMI_FAR_OFF;
-    int i, best = -1;
+    int i, k, best = -1;
     for (i = 0; i < olds; i++) {
-        const demi_kept *o = &old[i], *f = fresh;
+        const demi_kept *o = &old[i];
         dem_real fit = demi_dot(o->normal, c->normal);
         if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
             o->part_a != c->part_a || o->part_b != c->part_b ||
@@ -148,16 +153,31 @@ static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int o
             (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
             (o->element != c->element && how == DEMI_FIT_TURNED) || demi_kept_later(o)) continue;
         if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
-        if (how == DEMI_FIT_NEAREST) {
-            const dem_vec3 way = demi_sub(o->arm_a, c->arm_a);
-            while (f < c && f->from != first + i) f++;
-            fit = f < c ? DEMI_FAR_OFF : -demi_dot(way, way);
-        }
+        if (how == DEMI_FIT_NEAREST) fit = -demi_kept_off2(o, c);
         if (!(fit > most)) continue;
+        for (k = 0; how == DEMI_FIT_NEAREST && k < freshs; k++)
+            if (fresh[k].from == first + i && !(demi_kept_off2(o, &fresh[k]) > -fit)) break;
+        if (how == DEMI_FIT_NEAREST && k < freshs) continue;
         most = fit;
         best = first + i;
     }
     return best;
+}
+/* Finds which old contacts `count` new ones of one pair or wall continue, by DEMI_FIT_NEAREST. A
+   new contact takes an old one from another that is farther from it; that one looks again. So the
+   order of contacts changes nothing. */
+static void demi_kept_nearest(const dem_world *w, int d, const demi_kept *old, int olds,
+                              demi_kept *fresh, int count) {
+    int i, k, next;
+    for (i = 0; i < count; i++) fresh[i].from = -1;
+    for (i = 0; i < count; i++)
+        for (k = i; k < count; k = next) {
+            const int from = demi_kept_best(w, d, old, olds, fresh, count, &fresh[k],
+                                            DEMI_FIT_NEAREST);
+            for (next = 0; next < count && (from < 0 || fresh[next].from != from); next++);
+            if (next < count) fresh[next].from = -1;
+            fresh[k].from = from;
+        }
 }
 /* Similarity t of two contacts of the same pair: 1 if their normals are within 25 degrees, 0 beyond
    45 degrees, smooth in between. *rate receives its derivative with respect to the cosine of that
@@ -361,6 +381,7 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
                             int olds) {
     const dem_vec3 base_a = c->arm_a, base_b = c->arm_b;
     const dem_real thin = DEMI_MIN(demi_part_thin(p), demi_part_thin(q));
+    const int pressing = demi_response_is(w, DEMI_PRESSING);
     int k;
     c->share /= (dem_real)spots->count;
     c->corners = spots->count;
@@ -374,10 +395,9 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
         at->arm_b = demi_add(base_b, x);
         at->overlap = (dem_real)-spots->gap[k];
         at->deep = at->overlap/thin;
-        at->from = demi_response_is(w, DEMI_PRESSING)
-            ? demi_kept_same(w, d, old, olds, at)
-            : demi_kept_best(w, d, old, olds, c, k + 1, at, DEMI_FIT_NEAREST);
+        if (pressing) at->from = demi_kept_same(w, d, old, olds, at);
     }
+    if (!pressing) demi_kept_nearest(w, d, old, olds, c, spots->count);
     return 1;
 }
 /* Appends a contact of part i of body a with part j of body b. send: as in demi_kept. Returns null
@@ -620,11 +640,12 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
                                 demi_scale(c->normal, c->corners ? c->overlap/2 : 0));
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
-    for (i = 0, c = fresh; i < count; i++, c++)
-        c->from = !shaped || !c->corners ? demi_kept_same(w, d, old, olds, c)
-            : demi_kept_best(w, d, old, olds, fresh, count, c,
-                             demi_response_is(w, DEMI_PRESSING) ? DEMI_FIT_TURNED
-                                                                : DEMI_FIT_NEAREST);
+    if (shaped && count && fresh->corners && !demi_response_is(w, DEMI_PRESSING))
+        demi_kept_nearest(w, d, old, olds, fresh, count);
+    else
+        for (i = 0, c = fresh; i < count; i++, c++)
+            c->from = !shaped || !c->corners ? demi_kept_same(w, d, old, olds, c)
+                : demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_TURNED);
     for (i = 0, c = fresh; i < count; i++, c++) {
         if (demi_kept_later(c)) c->from = demi_kept_part(w, d, &old[olds], c);
         else if (c->from < 0 && olds)

@@ -48,11 +48,13 @@ static int demi_impulses_room(dem_world *w) {
 }
 /* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
    this step and are then discarded, so they add no kinetic energy. They do not rotate bodies. A
-   contact's own lift, kg m/s, is an impulse >= 0, found by projected Gauss-Seidel. */
-enum { DEMI_LIFTS = 5 };                        /* sweeps */
+   contact's own lift, kg m/s, is an impulse >= 0, found by projected Gauss-Seidel, to the tolerance
+   of the velocities. */
+enum { DEMI_LIFTS = 5 };                        /* least number of sweeps, if anything is lifted */
 #define DEMI_LIFTED DEM_R(0.2)                  /* part of an overlap corrected per step */
 static void demi_impulses_lift(dem_world *w, int index) {
     demi_solver *s = &w->solver;
+    demi_run_sums sums = {0, 0, 0, 0};
     int i, end;
     for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
         const demi_impulse *c = s->contacts + i;
@@ -68,7 +70,18 @@ static void demi_impulses_lift(dem_world *w, int index) {
         beside->lift = lift;
         if (ia > 0) demi_put(la, demi_sub(a, demi_scale(n, by*ia)));
         if (lb) demi_put(lb, demi_add(b, demi_scale(n, by*ib)));
+        demi_sums_add(&sums, by/beside->mass*(by/beside->mass));
     }
+    s->runs[s->run + index] = sums;
+}
+/* Finds the lifts of all bodies, in at most `most` sweeps. */
+static void demi_lifts_solve(dem_world *w, int most) {
+    demi_solved o = {0, 0, 0};
+    do {
+        demi_colours_all(w, demi_impulses_lift);
+        demi_solved_tell(&w->solver, &o, demi_runs_sum(&w->solver));
+    } while (o.worst > 0 && (++o.sweeps < DEMI_LIFTS ||
+                             (o.sweeps < most && demi_solved_open(w, &o))));
 }
 /* True if no contact and no joint acts on body i. */
 static int demi_mover_free(const dem_world *w, int i) {
@@ -282,6 +295,10 @@ static void demi_impulses(dem_world *w) {
         for (i = 0; i < DEMI_TAMINGS && demi_impulses_tame(w, i == DEMI_TAMINGS - 1); i++)
             solved = demi_solvers[w->desc.solver].solve(w, most);
     }
+    if (demi_solvers[w->desc.solver].vectors && !demi_solved_open(w, &solved)) {
+        demi_runs_all(w, demi_impulses_release);
+        demi_colours_all(w, demi_vectors_apply);
+    }
     w->booked.sweeps = solved.sweeps;
     w->booked.residual = solved.worst;
     w->booked.residual_rms = solved.rms;
@@ -299,7 +316,7 @@ static void demi_impulses(dem_world *w) {
     w->booked.due[3] = 0;
     w->booked.due[4] = demi_sum_energy(w, DEMI_E_FORCE);
     if (!w->stage.forces_valid) return;         /* forces only, no step */
-    for (i = 0; i < DEMI_LIFTS; i++) demi_colours_all(w, demi_impulses_lift);
+    demi_lifts_solve(w, most);
     for (i = 0; i < w->bodies.count; i++) {
         const dem_vec3 way = demi_scale(demi_at(s->lifts + 4*i), s->dt);
         demi_force_add(w->bodies.last_pos + 4*i, way);

@@ -346,6 +346,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
         o.arm_b = k->arm_b;
         o.r_eff = k->r_eff;
         o.size = w->bodies.pos[4*k->a + 3];
+        if (k->b >= 0) o.size = DEMI_MIN(o.size, w->bodies.pos[4*k->b + 3]);
         o.material = k->b < 0 ? w->walls[k->wall].material : w->bodies.material[k->b] - 1;
         o.memory = k->memory;
         o.stride = 1;
@@ -392,15 +393,13 @@ static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, co
 }
 /* Returns the friction coefficient of a contact with this slip (m/s). Static friction acts on
    contacts that did not slide in the last step. A contact without normal impulse in the last step
-   begins now; it slides from the beginning if its slip exceeds round-off and the speed that gravity
-   adds in a step (`rest`, m/s). Otherwise static friction would act during a whole impact, in a
-   number of impacts that would depend on how early contacts are detected. */
-static dem_real demi_impulse_friction(const dem_world *w, const dem_pair *pair,
-                                      const demi_spot *o, dem_vec3 slip, dem_real rest) {
-    const dem_real slow = rest + (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10))*
-        (dem_real)w->booked.speed_max;
+   begins now; it slides from the beginning if its slip exceeds `rest`, m/s. Otherwise static
+   friction would act during a whole impact, in a number of impacts that would depend on how early
+   contacts are detected. */
+static dem_real demi_impulse_friction(const dem_pair *pair, const demi_spot *o, dem_vec3 slip,
+                                      dem_real rest) {
     const int begins = !(o->memory[6*o->stride] > 0);
-    const int slides = begins ? demi_dot(slip, slip) > slow*slow
+    const int slides = begins ? demi_dot(slip, slip) > rest*rest
         : o->memory[DEMI_IMPULSE_SLIDES*o->stride] > 0;
     return slides ? pair->friction : DEMI_MAX(pair->friction, pair->friction_static);
 }
@@ -409,7 +408,9 @@ static dem_real demi_impulse_friction(const dem_world *w, const dem_pair *pair,
    plane. Cohesion begins at gaps below a millionth of the radius and lasts up to a thousandth. */
 static void demi_impulses_lay(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
-    const dem_real dt = s->dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
+    /* bodies are at rest up to the speed that gravity adds in a step, and to round-off */
+    const dem_real dt = s->dt, rest = (dem_real)demi_length(w->desc.gravity)*dt +
+        (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10))*(dem_real)w->booked.speed_max;
     const int shaped = w->bodies.shaped > 0;
     demi_domain *domain = &w->domains[d];
     int i;
@@ -447,8 +448,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         }
         before = demi_impulse_before(w, c);
         closing = demi_dot(before, o.normal);
-        mu = demi_impulse_friction(w, pair, &o, demi_sub(before, demi_scale(o.normal, closing)),
-                                   rest);
+        mu = demi_impulse_friction(pair, &o, demi_sub(before, demi_scale(o.normal, closing)), rest);
         if (shaped) demi_brings_bound(w, &g, mu);
         c->mu = mu;
         c->gn = g.n;

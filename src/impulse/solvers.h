@@ -294,6 +294,25 @@ static demi_solved demi_solve_jacobi(dem_world *w, int most) {
     return o;
 }
 
+/* Lets go of contacts that do not push, but of which a solver that takes parts of steps has left a
+   remainder of an impulse. */
+static void demi_impulses_release(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int convex = w->desc.cone == DEM_CONE_CONVEX, shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        dem_real push;
+        dem_vec3 slip;
+        s->vectors[i] = demi_v(0, 0, 0);
+        demi_impulse_wanted(c, demi_impulse_velocity(s, c, shaped), &push, &slip, convex);
+        if (push > 0 || !(c->push > 0)) continue;
+        s->vectors[i] = demi_scale(demi_add(demi_scale(c->normal, c->push), c->slip), -1);
+        c->push = 0;
+        c->slip = demi_v(0, 0, 0);
+    }
+}
+
 /* --- gradients --- */
 
 /* Columns of s->vectors, one vector per contact: BY: change of the impulse. X, UX: impulse and
@@ -502,9 +521,11 @@ static demi_solved demi_solve_gradient(dem_world *w, int most,
         demi_solved_tell(s, &o, sums);
     } while (++o.sweeps < most && demi_solved_open(w, &o));
     memcpy(s->movers, s->movers + movers, movers*sizeof *s->movers);
-    for (i = 0; i < s->count; i++)
+    for (i = 0; i < s->count; i++) {
+        s->contacts[i].bias = demi_vector_at(s, DEMI_GIVEN, i)->x;
         *demi_vector_at(s, DEMI_BY, i) = demi_sub(demi_impulse_vector(s->contacts + i),
                                                *demi_vector_at(s, DEMI_BEGAN, i));
+    }
     demi_colours_all(w, demi_vectors_apply);
     return o;
 }
