@@ -72,6 +72,7 @@
        >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
        >>flush             fixed polyhedra that touch: one surface
        >>meets             contact geometry of two bodies, and of a body on a wall, by shape
+       >>continued         which contact of the step before a persistent contact continues
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
        >>members           contacts of spheres that may be members of clusters
@@ -242,6 +243,7 @@
 #include "contact/ellipsoids.h"
 #include "contact/flush.h"
 #include "contact/meets.h"
+#include "contact/continued.h"
 #include "contact/kept.h"
 #include "contact/kept-respond.h"
 #include "contact/members.h"

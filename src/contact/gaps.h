@@ -356,8 +356,8 @@ static double demi_spot_matters(double off, double gap, double touch, double far
 }
 /* Picks up to four of many points in a plane across n: the deepest, and then by demi_spot_matters
    one by its distance from the deepest, and on either side of the line through both one by its
-   distance from that line. Returns their number. The range of the search changes nothing while four
-   points touch. */
+   distance from that line; if one side has none, the deepest of the others. Returns their number.
+   The range of the search changes nothing while four points touch. */
 static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
     demi_d3 across;
     double far = 0, touch, most = 0, side[2] = {0, 0};
@@ -386,6 +386,9 @@ static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_
         if (matters > side[k]) { side[k] = matters; best[k] = i; }
     }
     for (k = 0; k < 2; k++) if (best[k] >= 0) out[picked++] = best[k];
+    for (i = 0, k = -1; i < count && picked == 3; i++)
+        if (i != out[0] && i != out[1] && i != out[2] && (k < 0 || gap[i] < gap[k])) k = i;
+    if (k >= 0 && picked == 3) out[picked++] = k;
     return picked;
 }
 /* Keeps those of `count` points whose gaps are below range, at most four. Returns their number. */

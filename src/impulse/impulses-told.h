@@ -363,12 +363,9 @@ static void demi_some_back(dem_world *w, int index) {
 }
 /* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
    is its pose a whole step ahead, midway between two detections; surface velocities are those of
-   that time. In the first step of a world no body is ahead, and neither are walls: if they were, a
-   scene that moves as a whole would have other gaps than one at rest. Joints predict their walls
-   from half a step ahead. */
+   that time. Bodies that were just set are not ahead (demi_move_midpoint). */
 static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
-    const double lead = w->clock.steps || w->joint_count ? dt/2 : 0;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
     demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
@@ -377,7 +374,7 @@ static void demi_ahead(dem_world *w) {
         dem_pose pose;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(w, wall, w->clock.time + lead, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
         if (demi_pose_sane(&pose)) wall->pose = pose;
         demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
         if (demi_pose_sane(&pose)) wall->ahead = pose;

@@ -321,10 +321,26 @@ typedef struct demi_spot {
     const dem_real *memory;        /* real e is memory[e*stride] */
     size_t stride;
 } demi_spot;
+/* Returns what is to be added to the gap of a constraint, m, if one of the two is half a step ahead
+   and the other is not, being a body that was just set (demi_move_midpoint): the gap is that at the
+   time of the latter. */
+static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
+                                  const demi_spot *o) {
+    const int wall = k && k->b < 0, a = w->bodies.went[m->a], b = wall || w->bodies.went[m->b];
+    dem_vec3 v;
+    if (a == b) return 0;
+    if (a) v = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a);
+    else if (wall) {
+        const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
+        v = demi_surface_at(&w->walls[k->wall].ahead, demi_add(x, k->arm_a));
+    } else v = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);
+    return demi_dot(v, o->normal)*(a ? w->solver.dt : -w->solver.dt)/2;
+}
 /* Returns the geometry and the history of a constraint of domain d. */
 static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meeting *m) {
+    const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
     demi_spot o;
-    if (m->home >= 0) {
+    if (!k) {
         const size_t stride = (size_t)w->near.stride;
         const dem_vec3 way = demi_near_way(w, (size_t)d*stride + (size_t)m->home);
         const dem_real ra = w->bodies.pos[4*m->a + 3], rb = w->bodies.pos[4*m->b + 3];
@@ -339,7 +355,6 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
         o.memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + m->home;
         o.stride = stride;
     } else {
-        const demi_kept *k = w->kept_next + w->kept_first[d] + ~m->home;
         o.normal = k->normal;
         o.gap = -k->overlap/k->slope;           /* along the normal, m, whatever overlap means */
         o.arm_a = k->arm_a;
@@ -351,6 +366,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
         o.memory = k->memory;
         o.stride = 1;
     }
+    o.gap += demi_meeting_late(w, m, k, &o);
     return o;
 }
 /* Sets the solver body of a wall contact to the velocity of the wall's surface there. */
@@ -460,7 +476,8 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->bias = (pair->compliance > 0 ? o.gap : DEMI_MAX(o.gap, 0))/dt;
         hits = closing;
         beside->turns = pair->compliance > 0 ? 0 : demi_impulse_turns(w, m, k, &o, closing, &hits);
-        beside->bounces = pair->restitution > 0 && hits < -rest && o.gap + closing*dt <= 0;
+        beside->bounces = pair->restitution > 0 && hits < -rest &&
+            o.gap + closing*dt <= (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10))*o.size;
         if (beside->bounces) { c->bias = pair->restitution*closing; beside->turns = 0; }
         beside->leaves = closing > rest ? pair->restitution*closing : 0;
         c->bias += beside->turns;

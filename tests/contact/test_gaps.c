@@ -122,5 +122,15 @@ int main(int argc, char **argv) {
         CHECK(worst < 1e-9);
     }
 
+    TEST("of five points of which none is on one side, the nearest stays, however many are farther away") {
+        const demi_d3 x[5] = {demi_d(0, 0, 0), demi_d(1, 0, 0), demi_d(0.5, 0.01, 0), demi_d(0, 1, 0), demi_d(1, 1, 0)};
+        const double gap[5] = {0.057, 0.0574, 0.0623, 0.35, 0.36};     /* touch: 0.057 and 1e-4 of the distance */
+        int out[4], i, count, has = 0;
+        count = demi_spots_pick(x, gap, 5, demi_d(0, 0, 1), out);
+        for (i = 0; i < count; i++) has |= 1 << out[i];
+        CHECK_EQ(count, 4);
+        CHECK_EQ(has & 7, 7);                   /* they touch first */
+    }
+
     return test_end();
 }

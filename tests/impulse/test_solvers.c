@@ -59,6 +59,47 @@ static double farthest(const double *a, const double *b, int count) {
     return most;
 }
 
+/* Number of contacts of two grains that have hit each other and separated, on a floor that they nearly touch. */
+static int solver_separated(dem_solver solver) {
+    dem_world_desc desc = solver_desc(solver, DEM_CONE_COULOMB);
+    dem_world *w;
+    dem_material m;
+    int i, contacts;
+    desc.gravity.z = 0;
+    desc.dt = DEM_R(1e-4);
+    w = dem_world_create(&desc);
+    m = scene_material(w, 0, 0.5, 0, 0);
+    dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+    for (i = 0; i < 2; i++) {
+        const dem_body grain = dem_sphere_add(w, m, DEM_R(1e-3), at(2e-3*i, 0, 1.0001e-3));
+        scene_move(w, grain, at(0.2 - 0.2*i, 0, 0), at(0, 0, 0));
+    }
+    CHECK_EQ(scene_step(w, 1), DEM_OK);
+    contacts = dem_counters_get(w).contacts;
+    CHECK(scene_state(w, dem_body_id_get(w, 0)).velocity.x < scene_state(w, dem_body_id_get(w, 1)).velocity.x);
+    dem_world_destroy(w);
+    return contacts;
+}
+/* Velocity, m/s, at which a grain that has bounced off a floor, sliding, could approach it again; friction 0.1. */
+static double solver_target(dem_solver solver) {
+    dem_world_desc desc = solver_desc(solver, DEM_CONE_COULOMB);
+    dem_world *w;
+    dem_material m;
+    dem_body grain;
+    double bias;
+    desc.gravity.z = 0;
+    desc.dt = DEM_R(1e-4);
+    w = dem_world_create(&desc);
+    m = scene_material(w, 0, 0.5, 0.1, 0);
+    dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+    grain = dem_sphere_add(w, m, DEM_R(1e-3), at(0, 0, 1e-3));
+    scene_move(w, grain, at(5, 0, -1), at(0, 0, 0));
+    CHECK_EQ(scene_step(w, 1), DEM_OK);
+    bias = (double)w->solver.contacts[0].bias;
+    dem_world_destroy(w);
+    return bias;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("impulses: projected impulses lie in the cone, nearest in the contact's metric, and projecting again changes "
@@ -244,6 +285,18 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error_get(world), "rolling or spinning friction, which the solver APGD does not support");
         dem_world_destroy(world);
+    }
+    TEST("grains that separate after an impact are no contacts, with every solver") {
+        CHECK_EQ(solver_separated(DEM_SOLVER_GAUSS_SEIDEL), 0);
+        CHECK_EQ(solver_separated(DEM_SOLVER_JACOBI), 0);
+        CHECK_EQ(solver_separated(DEM_SOLVER_APGD), 0);
+        CHECK_EQ(solver_separated(DEM_SOLVER_SPECTRAL), 0);
+    }
+    TEST("solvers leave the target of a contact as it was given") {
+        const double want = solver_target(DEM_SOLVER_GAUSS_SEIDEL);
+        CHECK_NEAR(solver_target(DEM_SOLVER_JACOBI), want, 1e-4);      /* m/s; they may be off by 5e-5 */
+        CHECK_NEAR(solver_target(DEM_SOLVER_APGD), want, 1e-4);
+        CHECK_NEAR(solver_target(DEM_SOLVER_SPECTRAL), want, 1e-4);
     }
     return test_end();
 }

@@ -277,9 +277,15 @@ static void rel_map_scene(rel_scene *to, const rel_scene *from, const rel_map *m
     rel_copy(to, from);
     for (i = 0; i < to->count; i++) {
         rel_op *op = &to->op[i];
-        for (j = 0; j < rel_calls[op->call].field_count; j++)      /* points that are left at 0 move, too */
-            if (rel_calls[op->call].fields[j].nature == REL_POINT && rel_calls[op->call].fields[j].type == REL_VEC &&
-                !rel_find(op, rel_calls[op->call].fields[j].name)) rel_slot(op, rel_calls[op->call].fields[j].name);
+        for (j = 0; j < rel_calls[op->call].field_count; j++) {    /* points and directions left at defaults move, too */
+            const rel_field *f = &rel_calls[op->call].fields[j];
+            const char *defaults = (const char *)rel_calls[op->call].defaults;
+            dem_vec3 x = {0, 0, 0};
+            if (f->type != REL_VEC || (f->nature != REL_POINT && f->nature != REL_VECTOR && f->nature != REL_AXIAL) ||
+                rel_find(op, f->name)) continue;
+            if (defaults) memcpy(&x, defaults + f->at, sizeof x);
+            if (f->nature == REL_POINT || fabs(x.x) + fabs(x.y) + fabs(x.z) > 0) rel_put3(op, f->name, x.x, x.y, x.z);
+        }
         for (j = 0; j < op->count; j++) {
             rel_set *v = &op->set[j];
             const rel_field *f = &rel_calls[op->call].fields[v->field];
