@@ -23,12 +23,13 @@ static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational
 }
 /* Forces were computed without a step: books what springs hold more than before, because the scene
    has changed and nothing has moved, as `growth`. The tangential part passes through the work
-   against the tangential force, so that it does not count as a loss. */
-static void demi_growth_book(dem_world *w) {
+   against the tangential force, so that it does not count as a loss. sag: J, what normal laws will
+   lose by hysteresis in the next step, because the contact history is still that of before. */
+static void demi_growth_book(dem_world *w, double sag) {
     const double shear = demi_sum_energy(w, DEMI_E_SHEAR_STORED) -
         w->booked.energy[DEMI_E_SHEAR_STORED];
     const double work = demi_sum_energy(w, DEMI_E_ELASTIC) - w->booked.energy[DEMI_E_ELASTIC] +
-        shear;
+        shear + sag;
     w->booked.energy[DEMI_E_GROWTH] += work;
     w->booked.energy[DEMI_E_SHEAR_WORK] += shear;
     w->booked.throughput += fabs(work);
@@ -40,16 +41,17 @@ static void demi_growth_book(dem_world *w) {
 static void demi_ledger_book(dem_world *w) {
     static const int flows[] = {DEMI_E_DASHPOT, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_ROLL,
                                 DEMI_E_FORCE};
+    const double sag = w->stage.forces_valid ? 0 : demi_sum_energy(w, DEMI_E_DASHPOT);
     double walls = 0;
     size_t i;
     if (!w->desc.ledger) return;
     for (i = 0; i < sizeof flows/sizeof *flows; i++) {
-        const double part = demi_sum_energy(w, flows[i]);
+        const double part = demi_sum_energy(w, flows[i]) - (flows[i] == DEMI_E_DASHPOT ? sag : 0);
         w->booked.energy[flows[i]] += part;
         if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
     }
-    if (!w->stage.forces_valid) demi_growth_book(w);
-    w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
+    if (!w->stage.forces_valid) demi_growth_book(w, sag);
+    w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC) + sag;
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
         w->booked.energy[DEMI_E_TOLD] += fabs(demi_sum_energy(w, (int)i));

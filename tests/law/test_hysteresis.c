@@ -452,6 +452,43 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
+    TEST("what a hysteretic contact loses because a grain was placed or moved into overlap is booked once, and supplied") {
+        int moved;
+        for (moved = 0; moved < 3; moved++) {
+            const dem_material_desc m = sticky(KUN, 0);
+            dem_world *world = world_of(1e-6, 0);
+            const dem_material stuff = dem_material_add(world, &m);
+            const double d = 1e-5, work = KL*d*d/2, lost = work*(1 - (double)KL/KUN);
+            const double at_first = moved ? 0.02 : 0.01 - d;
+            double depth = 0;
+            dem_body body;
+            dem_body_state s;
+            dem_ledger l;
+            dem_wall_plane_add(world, stuff, at(0, 0, 0), at(1, 0, 0));
+            body = dem_sphere_add(world, stuff, DEM_R(0.01), at(at_first, 0, 0));
+            if (moved) CHECK_EQ(scene_step(world, 1), DEM_OK);
+            if (moved == 2) {                          /* deeper, read there, and back, in no step */
+                s = scene_state(world, body);
+                s.position.x = (dem_real)(0.01 - 5*d);
+                dem_body_set(world, body, &s);
+                CHECK_EQ(dem_contacts_each(world, read_depth, &depth), 1);
+            }
+            s = scene_state(world, body);
+            s.position.x = (dem_real)(0.01 - d);
+            dem_body_set(world, body, &s);
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            l = dem_ledger_get(world);
+            CHECK_REL(l.growth, work, 1e-3);
+            CHECK_REL(l.normal, lost, 1e-3);
+            CHECK_REL(l.elastic, work - lost, 1e-3);
+            CHECK_NEAR(l.residual, 0, 1e-4*work);
+            CHECK_EQ(scene_step(world, 4000), DEM_OK);         /* it leaves with the rest */
+            l = dem_ledger_get(world);
+            CHECK_REL(l.kinetic, work - lost, 1e-2);
+            CHECK_NEAR(l.residual, 0, 1e-2*work);
+            dem_world_destroy(world);
+        }
+    }
 
     return test_end();
 }
