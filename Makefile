@@ -61,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install python python-check rooms test hard coverage mutants relations law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## print this list
@@ -103,10 +103,16 @@ mutants: ## N=200 SEED=1: make small errors in src/, one after another, and list
 	@N="$(N)" SEED="$(SEED)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" JOBS=$(if $(filter file,$(origin JOBS)),1,$(JOBS)) \
 	    CC="$(CC)" CFLAGS="$(CFLAGS)" OMP="$(OMP)" sh tests/mutants.sh
 
-relations: build/relations ## draw N (2000) scenes from rows of features and check relations between runs; SEED=97: all relations of one scene; N=100000: continues where it was interrupted
+relations: build/relations $(if $(SEED),,build/relations_float) ## draw N (400) scenes from rows of features and check relations between runs; SEED=97: all relations of one scene; N=100000: continues where it was interrupted
 	@mkdir -p build/tmp build/out
 	@if [ "$(SEED)" ]; then build/relations --seed $(SEED) --print; \
-	else build/relations --scenes $(or $(N),2000) $(if $(N),--log build/relations_$(N).log) --page build/out/relations.md; fi
+	else build/relations --scenes $(or $(N),400) $(if $(N),--log build/relations_$(N).log) --page build/out/relations.md; code=$$?; \
+	    echo "single precision:"; build/relations_float --scenes 100 && exit $$code; fi
+
+relations-sanitized: ## the same with sanitizers of addresses and undefined behaviour; N (1000) scenes, 140 s of processor time per 1000
+	@mkdir -p build/san build/tmp
+	@$(MAKE) --no-print-directory build/san/relations
+	build/san/relations --scenes $(or $(N),1000)
 
 law: $(if $(LAW),build/dem.o,build/exam) ## LAW=path/to/my_law.h: examine a contact law and draw its curves on a page; without LAW the built-in laws
 	@mkdir -p build/out/exam
@@ -195,10 +201,12 @@ readers: build/write_files ## write every file format and open it with VTK and A
 	@$(PYTHON) tests/read_vtk.py build/out/readers
 	@$(PYTHON) tests/read_xyz.py build/out/readers
 
-tags: ## check that dem.h is joined from src/, that its parts agree with its contents, that parts, functions and lines keep their limits, and that calls of user-defined functions are marked
+tags: ## check that dem.h is joined from src/, that its parts agree with its contents, that parts, functions and lines keep their limits, that calls of user-defined functions are marked, and that relations call every public function
 	@awk -f src/join.awk src/dem.h | cmp - dem.h
 	@awk -f tests/tags.awk dem.h
 	@awk -f tests/calls.awk dem.h
+	@awk -f tests/relations/called.awk dem.h tests/relations/*.h tests/relations/relations.c
+	@awk -f tests/relations/fields.awk tests/relations/fields.txt dem.h tests/relations/calls.h
 	@$(MAKE) --no-print-directory english
 
 english: ## list sentences of pages, public comments, error messages and test names that need a second reading
@@ -277,8 +285,19 @@ build/write_files: tests/write_files.c
 build/write_replays: tests/write_replays.c
 $(BENCHES): dem.h build/flags
 	$(COMPILE) -o $@ $(filter %/$(@F).c,$^) $(LINK)
-build/relations: tests/relations/relations.c $(wildcard tests/relations/*.h) build/dem.o
-	$(COMPILE) -o $@ $< build/dem.o $(LINK)
+# relations have work groups of any size and use all threads that a scene asks for; once more in single precision
+RELATIONS = $(COMPILE) $(OMP) -include tests/relations/groups.h -DDEM_THREADS_FIXED
+build/relations_float build/obj/relations_float_dem.o: OTHER = -DDEM_REAL=float
+build/obj/relations_dem.o build/obj/relations_float_dem.o: dem.c dem.h tests/relations/groups.h build/flags
+	$(RELATIONS) $(LEVEL) $(OTHER) -c -o $@ $<
+build/relations build/relations_float: build/%: tests/relations/relations.c $(wildcard tests/relations/*.h examples/laws/*.h) build/obj/%_dem.o
+	$(RELATIONS) $(LEVEL:-O2=-O1) $(OTHER) -o $@ $< build/obj/$*_dem.o $(LINK)
+SANITIZE = -g -O1 -ffp-contract=off -fsanitize=address,undefined -fno-sanitize-recover=all
+build/san/dem.o: dem.c dem.h tests/relations/groups.h
+	@mkdir -p $(@D)
+	$(CC) -std=c99 $(SANITIZE) -I. $(OMP) -include tests/relations/groups.h -DDEM_THREADS_FIXED -c -o $@ dem.c
+build/san/relations: tests/relations/relations.c $(wildcard tests/relations/*.h examples/laws/*.h) build/san/dem.o
+	$(CC) -std=c99 $(SANITIZE) -I. -o $@ $< build/san/dem.o $(LINK)
 build/dem.o: dem.c dem.h build/flags
 	$(COMPILE) $(OMP) -c -o $@ dem.c
 $(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_replays: build/dem.o

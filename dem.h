@@ -72,6 +72,7 @@
        >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
        >>flush             fixed polyhedra that touch: one surface
        >>meets             contact geometry of two bodies, and of a body on a wall, by shape
+       >>continued         which contact of the step before a persistent contact continues
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
        >>members           contacts of spheres that may be members of clusters
@@ -9262,6 +9263,29 @@ static int demi_kept_part(const dem_world *w, int d, const demi_kept *end, const
     while (o < end && demi_kept_later(o) && o->wall != c->wall);
     return o < end && demi_kept_later(o) ? (int)(o - now) : from;
 }
+/* Lets each of the four points c[0] .. c[3] of a pressure continue the old point that lies where it
+   does. This has another number if the direction in which the pressure is spread most has reversed
+   in this step, or has turned by a right angle (demi_patch_along). Springs that pass to the
+   opposite point would reverse the moment of friction about the normal. */
+static void demi_kept_turn(const dem_world *w, int d, demi_kept *c) {
+    static const unsigned char turned[4][4] = {{0, 1, 2, 3}, {2, 0, 3, 1}, {3, 2, 1, 0},
+                                               {1, 3, 0, 2}};
+    const demi_kept *now = demi_kept_of(w, d);
+    dem_vec3 is[4] = DEM_ZERO, was[4] = DEM_ZERO;
+    dem_real same, right;
+    int from[4], k, turns;
+    if (!demi_response_is(w, DEMI_PRESSING) || demi_kept_later(c)) return;
+    for (k = 0; k < 4; k++) {
+        if (c[k].from < 0 || now[c[k].from].corners != 4) return;
+        from[c[k].corner] = c[k].from;
+        is[c[k].corner] = c[k].more.spread;
+        was[c[k].corner] = now[c[k].from].more.spread;
+    }
+    same = demi_dot(is[0], was[0]) + demi_dot(is[1], was[1]);
+    right = demi_dot(is[1], was[0]) - demi_dot(is[0], was[1]);
+    turns = DEMI_ABS(right) > DEMI_ABS(same) ? (right > 0 ? 1 : 3) : same < 0 ? 2 : 0;
+    for (k = 0; k < 4 && turns; k++) c[k].from = from[turned[turns][c[k].corner]];
+}
 /* The weight of friction of all parts of a contact. */
 DEM_INLINE dem_real demi_kept_whole(const demi_kept *c) {
     return c->odd && c->more.part > 0 ? c->grip/c->more.part : c->grip;
@@ -10156,6 +10180,14 @@ DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
    w->bodies, and writes the speeds of rotation of work groups (turn, turn_rate, turn_speed).
    >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
    --------------------------------------------------------------------------------------------- */
+/* True if forces depend on spins. demi_turns: also if bodies have orientations. Otherwise spins
+   stay as they are: torques of contacts are round-off. */
+static int demi_spins(const dem_world *w) {
+    return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
+           w->effects.rolling != DEM_ROLLING_NONE || w->effects.twisting;
+}
+static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
+
 typedef struct demi_lane {           /* translation or rotation of one body */
     dem_real *v, *half, *f;          /* velocity, half-step velocity, force: 4 reals each */
     dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces */
@@ -10312,11 +10344,12 @@ static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (vo
 /* Second half kick, for schemes whose velocities are at the half step. */
 static void demi_finish_halves(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->clock.half_kick;
+    const int turning = demi_turns(w);
     int i;
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
         demi_finish_half(&b, h);
-        demi_finish_half(&s, h);
+        if (turning) demi_finish_half(&s, h);
     }
 }
 /* For the ledger: stores in `late` by how much the velocities used by contact laws were too low,
@@ -10341,12 +10374,13 @@ static void demi_late_note(dem_world *w, int begin, int end) {
 static void demi_prime_body(dem_world *w, int i) {
     const dem_real dt = w->clock.dt, h = dt/2;
     const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+    const int turning = demi_turns(w);
     int k;
     for (k = 0; k < 3; k++) {
         const dem_real a = b.f[k]*b.inv + b.g[k];
         b.half[k] = b.v[k] - a*h;
         if (w->bodies.backward) w->bodies.last_pos[4*i + k] = w->bodies.pos[4*i + k] - b.half[k]*dt;
-        s.half[k] = s.v[k] - s.f[k]*s.inv*h;
+        s.half[k] = turning ? s.v[k] - s.f[k]*s.inv*h : s.v[k];
     }
     if (w->bodies.shaped && w->bodies.shape[i])
         demi_put(w->bodies.angular + 4*i,
@@ -10409,7 +10443,10 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     const dem_vec3 w3 = demi_v(a.x*(w2.y*w.z + 2*w1.y*w1.z + w.y*w2.z),
                                a.y*(w2.z*w.x + 2*w1.z*w1.x + w.z*w2.x),
                                a.z*(w2.x*w.y + 2*w1.x*w1.y + w.x*w2.y));
-    const dem_real ll = demi_dot(L, L);
+    /* products of angular momenta would underflow in single precision: angles per step */
+    const dem_real unit = DEMI_SINGLE ? inv.x*h : 1;
+    const dem_vec3 turn = demi_scale(L, unit);
+    const dem_real ll = demi_dot(turn, turn);
     dem_vec3 mean, end, g, c, magnus;
     end = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(1.0/3))), h*h*DEM_R(0.5));
     mean = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(0.25))), h*h*DEM_R(1.0/6));
@@ -10417,8 +10454,8 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     mean = demi_add(w, demi_add(demi_scale(w1, h*DEM_R(0.5)), mean));
     magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
     *q = dem_quat_multiply(*q, demi_quat_exp(demi_scale(demi_add(mean, magnus), h)));
-    end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
-    g = dem_quat_unrotate(*q, L);
+    end = demi_scale(demi_v(I.x*end.x, I.y*end.y, I.z*end.z), unit);
+    g = dem_quat_unrotate(*q, turn);
     c = demi_scale(demi_cross(end, g), ll > DEMI_TINY ? DEM_R(0.5)/ll : 0);
     *q = demi_quat_again(dem_quat_multiply(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
@@ -15798,7 +15835,7 @@ static void demi_kept_move(dem_world *w, const int *first) {
             }
             w->kept_next[e++] = c;
         }
-        w->domains[d].kept = 0;
+        w->domains[d].kept = w->domains[d].kept_walls = 0;
         w->domains[d].coefs = 0;                /* materials may have changed */
     }
     memcpy(w->kept_first, first, sizeof w->kept_first);
@@ -15813,7 +15850,9 @@ static void demi_kept_move(dem_world *w, const int *first) {
         }
     for (k = 0; k < e; k++) {
         const demi_kept *c = &w->kept_next[k];
-        demi_kept_of(w, demi_domain_of(w, c->a))[w->bodies.order[c->a]++] = *c;
+        d = demi_domain_of(w, c->a);
+        demi_kept_of(w, d)[w->bodies.order[c->a]++] = *c;
+        w->domains[d].kept_walls += c->b < 0 && (c->overlap > 0 || c->row < 0);    /* as respond */
     }
 }
 
@@ -16701,12 +16740,6 @@ static void demi_skin_choose(dem_world *w) {
 static int demi_own(const dem_world *w) {
     return w->desc.law || w->desc.body_reals_fn || w->desc.force || w->desc.body_force;
 }
-/* True if forces depend on spins. demi_turns: also if bodies have orientations. */
-static int demi_spins(const dem_world *w) {
-    return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
-           w->effects.rolling != DEM_ROLLING_NONE || w->effects.twisting;
-}
-static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
 /* Returns the number of work groups: 1, 2, 4 or a multiple of 8, which divides evenly among most
    numbers of threads. It depends only on the scene, so bits do not depend on threads. shaped: the
@@ -19744,8 +19777,8 @@ static double demi_spot_matters(double off, double gap, double touch, double far
 }
 /* Picks up to four of many points in a plane across n: the deepest, and then by demi_spot_matters
    one by its distance from the deepest, and on either side of the line through both one by its
-   distance from that line. Returns their number. The range of the search changes nothing while four
-   points touch. */
+   distance from that line; if one side has none, the deepest of the others. Returns their number.
+   The range of the search changes nothing while four points touch. */
 static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
     demi_d3 across;
     double far = 0, touch, most = 0, side[2] = {0, 0};
@@ -19774,6 +19807,9 @@ static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_
         if (matters > side[k]) { side[k] = matters; best[k] = i; }
     }
     for (k = 0; k < 2; k++) if (best[k] >= 0) out[picked++] = best[k];
+    for (i = 0, k = -1; i < count && picked == 3; i++)
+        if (i != out[0] && i != out[1] && i != out[2] && (k < 0 || gap[i] < gap[k])) k = i;
+    if (k >= 0 && picked == 3) out[picked++] = k;
     return picked;
 }
 /* Keeps those of `count` points whose gaps are below range, at most four. Returns their number. */
@@ -23222,74 +23258,11 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>kept
-   Contact detection for persistent contacts: all contacts except those of sphere on sphere (with
-   springs also of spheres of clusters), which >>respond and >>members handle without such a list.
-   Two such bodies may touch at several points, with normals that do not pass through their centres,
-   and a body touches a wall once per nearby surface. These contacts are therefore stored one by one
-   in a list (demi_kept) and followed from step to step, so that each keeps its history.
-
-   The function demi_touch builds the list of the present step. It finds the contact points (part
-   against part by >>meets, part against wall element by >>touch) and decides which contact of the
-   step before each one continues. >>kept-respond then continues the history, evaluates the contact
-   law and adds the forces. Within a work group the list is ordered by body a. If a list is too
-   short, demi_touch enlarges it and starts again; this loses nothing, since the old list is
-   untouched.
+   >>continued
+   Which persistent contact of the step before a new one of >>kept continues. The functions return
+   its index within its work group, or -1. `old` and `olds` are the contacts that body a had in the
+   step before, and their number. Writes the field `from` of new contacts only.
    --------------------------------------------------------------------------------------------- */
-
-/* True if the law is evaluated for contact c: if the two overlap, or if the law has a range. False
-   for a body on its way through a hole of a reduced sieve, whose weight is 0. */
-DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
-    return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
-}
-/* Prefetches what the next step needs of the contact `by` entries after k or, with `all`, the
-   fields that every contact uses. That entry may lie beyond the end of the list. */
-DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by, int all) {
-    const uintptr_t at = (uintptr_t)k + by*sizeof *k;
-    size_t e;
-    DEMI_UNROLL
-    for (e = 0; e < offsetof(demi_kept, memory) + 3*sizeof(dem_real); e += 64)
-        DEMI_FETCH((const void *)(at + e));
-    if (!all) return;
-    DEMI_UNROLL
-    for (e = offsetof(demi_kept, arm_b); e < offsetof(demi_kept, more); e += 64)
-        DEMI_FETCH((const void *)(at + e));
-}
-/* Clears all of a contact but its history, which respond writes, and `more`. */
-DEM_INLINE void demi_kept_blank(demi_kept *c) {
-    memset(c, 0, offsetof(demi_kept, memory));
-    memset(&c->arm_b, 0, offsetof(demi_kept, more) - offsetof(demi_kept, arm_b));
-}
-/* Appends a contact to the new list of work group d and returns it, cleared except for its history
-   and `more`. Returns null if the list is full. */
-static demi_kept *demi_kept_new(dem_world *w, int d) {
-    demi_domain *domain = &w->domains[d];
-    demi_kept *c;
-    if (domain->kept_next >= w->kept_first[d + 1] - w->kept_first[d]) {
-        domain->overflow |= 16;
-        return 0;
-    }
-    c = w->kept_next + w->kept_first[d] + domain->kept_next++;
-    demi_kept_blank(c);
-    c->b = -1;
-    c->share = c->slope = 1;
-    return c;
-}
-DEM_INLINE dem_vec3 demi_kept_spread_of(const demi_kept *c) {
-    return c->odd ? c->more.spread : demi_v(0, 0, 0);
-}
-DEM_INLINE dem_vec3 demi_kept_felt(const demi_kept *c) {
-    return c->odd ? c->more.felt : demi_v(0, 0, 0);
-}
-/* Copies a new contact, for which no force has been computed yet. */
-static void demi_kept_copy(demi_kept *to, const demi_kept *from) {
-    memcpy(to, from, offsetof(demi_kept, more));
-    if (from->odd) to->more = from->more;
-}
-
-/* --- continuation: the index within its work group of the old contact that a new one continues, or
-   -1. `old` and `olds` are the contacts that body a had in the step before, and their number.
-   --- */
 
 /* Returns the old contact with the same partner and parts or, at a wall, with the same wall, part,
    element and corner; -1 if there is none. */
@@ -23402,6 +23375,73 @@ static void demi_kept_nearest(const dem_world *w, int d, const demi_kept *old, i
             fresh[k].from = from;
         }
 }
+
+/* ---------------------------------------------------------------------------------------------
+   >>kept
+   Contact detection for persistent contacts: all contacts except those of sphere on sphere (with
+   springs also of spheres of clusters), which >>respond and >>members handle without such a list.
+   Two such bodies may touch at several points, with normals that do not pass through their centres,
+   and a body touches a wall once per nearby surface. These contacts are therefore stored one by one
+   in a list (demi_kept) and followed from step to step, so that each keeps its history.
+
+   The function demi_touch builds the list of the present step. It finds the contact points (part
+   against part by >>meets, part against wall element by >>touch) and decides which contact of the
+   step before each one continues. >>kept-respond then continues the history, evaluates the contact
+   law and adds the forces. Within a work group the list is ordered by body a. If a list is too
+   short, demi_touch enlarges it and starts again; this loses nothing, since the old list is
+   untouched.
+   --------------------------------------------------------------------------------------------- */
+
+/* True if the law is evaluated for contact c: if the two overlap, or if the law has a range. False
+   for a body on its way through a hole of a reduced sieve, whose weight is 0. */
+DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
+    return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
+}
+/* Prefetches what the next step needs of the contact `by` entries after k or, with `all`, the
+   fields that every contact uses. That entry may lie beyond the end of the list. */
+DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by, int all) {
+    const uintptr_t at = (uintptr_t)k + by*sizeof *k;
+    size_t e;
+    DEMI_UNROLL
+    for (e = 0; e < offsetof(demi_kept, memory) + 3*sizeof(dem_real); e += 64)
+        DEMI_FETCH((const void *)(at + e));
+    if (!all) return;
+    DEMI_UNROLL
+    for (e = offsetof(demi_kept, arm_b); e < offsetof(demi_kept, more); e += 64)
+        DEMI_FETCH((const void *)(at + e));
+}
+/* Clears all of a contact but its history, which respond writes, and `more`. */
+DEM_INLINE void demi_kept_blank(demi_kept *c) {
+    memset(c, 0, offsetof(demi_kept, memory));
+    memset(&c->arm_b, 0, offsetof(demi_kept, more) - offsetof(demi_kept, arm_b));
+}
+/* Appends a contact to the new list of work group d and returns it, cleared except for its history
+   and `more`. Returns null if the list is full. */
+static demi_kept *demi_kept_new(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    demi_kept *c;
+    if (domain->kept_next >= w->kept_first[d + 1] - w->kept_first[d]) {
+        domain->overflow |= 16;
+        return 0;
+    }
+    c = w->kept_next + w->kept_first[d] + domain->kept_next++;
+    demi_kept_blank(c);
+    c->b = -1;
+    c->share = c->slope = 1;
+    return c;
+}
+DEM_INLINE dem_vec3 demi_kept_spread_of(const demi_kept *c) {
+    return c->odd ? c->more.spread : demi_v(0, 0, 0);
+}
+DEM_INLINE dem_vec3 demi_kept_felt(const demi_kept *c) {
+    return c->odd ? c->more.felt : demi_v(0, 0, 0);
+}
+/* Copies a new contact, for which no force has been computed yet. */
+static void demi_kept_copy(demi_kept *to, const demi_kept *from) {
+    memcpy(to, from, offsetof(demi_kept, more));
+    if (from->odd) to->more = from->more;
+}
+
 /* Similarity t of two contacts of the same pair: 1 if their normals are within 25 degrees, 0 beyond
    45 degrees, smooth in between. *rate receives its derivative with respect to the cosine of that
    angle. */
@@ -23593,6 +23633,7 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
     }
     c->arm_a = demi_add(c->arm_a, to);
     c->arm_b = demi_add(c->arm_b, to);
+    demi_kept_turn(w, d, c);
     return 1;
 }
 /* Splits contact c of two polyhedra into the points of its contact manifold `spots`. On entry
@@ -23872,6 +23913,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
         if (demi_kept_later(c)) c->from = demi_kept_part(w, d, &old[olds], c);
         else if (c->from < 0 && olds)
             c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
+        if (c->corner == 3) demi_kept_turn(w, d, c - 3);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(w, old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* stays in the hole until through */
@@ -24690,7 +24732,8 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
     demi_kept *c = t->contact[q];
     const dem_vec3 force = demi_row(t->rows.force, q);
     demi_force_add(w->bodies.force + 4*c->a, force);
-    demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
+    if (demi_turns(w))                          /* else nothing sets torques to 0 in a step */
+        demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
     if (c->b >= 0) {                            /* several contacts may share a slot */
         dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
         c->force = force;
@@ -25684,10 +25727,26 @@ typedef struct demi_spot {
     const dem_real *memory;        /* real e is memory[e*stride] */
     size_t stride;
 } demi_spot;
+/* Returns what is to be added to the gap of a constraint, m, if one of the two is half a step ahead
+   and the other is not, being a body that was just set (demi_move_midpoint): the gap is that at the
+   time of the latter. */
+static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
+                                  const demi_spot *o) {
+    const int wall = k && k->b < 0, a = w->bodies.went[m->a], b = wall || w->bodies.went[m->b];
+    dem_vec3 v;
+    if (a == b) return 0;
+    if (a) v = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a);
+    else if (wall) {
+        const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
+        v = demi_surface_at(&w->walls[k->wall].ahead, demi_add(x, k->arm_a));
+    } else v = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);
+    return demi_dot(v, o->normal)*(a ? w->solver.dt : -w->solver.dt)/2;
+}
 /* Returns the geometry and the history of a constraint of domain d. */
 static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meeting *m) {
+    const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
     demi_spot o;
-    if (m->home >= 0) {
+    if (!k) {
         const size_t stride = (size_t)w->near.stride;
         const dem_vec3 way = demi_near_way(w, (size_t)d*stride + (size_t)m->home);
         const dem_real ra = w->bodies.pos[4*m->a + 3], rb = w->bodies.pos[4*m->b + 3];
@@ -25702,7 +25761,6 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
         o.memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + m->home;
         o.stride = stride;
     } else {
-        const demi_kept *k = w->kept_next + w->kept_first[d] + ~m->home;
         o.normal = k->normal;
         o.gap = -k->overlap/k->slope;           /* along the normal, m, whatever overlap means */
         o.arm_a = k->arm_a;
@@ -25714,6 +25772,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
         o.memory = k->memory;
         o.stride = 1;
     }
+    o.gap += demi_meeting_late(w, m, k, &o);
     return o;
 }
 /* Sets the solver body of a wall contact to the velocity of the wall's surface there. */
@@ -25823,7 +25882,8 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->bias = (pair->compliance > 0 ? o.gap : DEMI_MAX(o.gap, 0))/dt;
         hits = closing;
         beside->turns = pair->compliance > 0 ? 0 : demi_impulse_turns(w, m, k, &o, closing, &hits);
-        beside->bounces = pair->restitution > 0 && hits < -rest && o.gap + closing*dt <= 0;
+        beside->bounces = pair->restitution > 0 && hits < -rest &&
+            o.gap + closing*dt <= (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10))*o.size;
         if (beside->bounces) { c->bias = pair->restitution*closing; beside->turns = 0; }
         beside->leaves = closing > rest ? pair->restitution*closing : 0;
         c->bias += beside->turns;
@@ -27862,12 +27922,9 @@ static void demi_some_back(dem_world *w, int index) {
 }
 /* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
    is its pose a whole step ahead, midway between two detections; surface velocities are those of
-   that time. In the first step of a world no body is ahead, and neither are walls: if they were, a
-   scene that moves as a whole would have other gaps than one at rest. Joints predict their walls
-   from half a step ahead. */
+   that time. Bodies that were just set are not ahead (demi_move_midpoint). */
 static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
-    const double lead = w->clock.steps || w->joint_count ? dt/2 : 0;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
     demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
@@ -27876,7 +27933,7 @@ static void demi_ahead(dem_world *w) {
         dem_pose pose;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(w, wall, w->clock.time + lead, &pose);
+        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
         if (demi_pose_sane(&pose)) wall->pose = pose;
         demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
         if (demi_pose_sane(&pose)) wall->ahead = pose;
@@ -31402,12 +31459,13 @@ static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational
 }
 /* Forces were computed without a step: books what springs hold more than before, because the scene
    has changed and nothing has moved, as `growth`. The tangential part passes through the work
-   against the tangential force, so that it does not count as a loss. */
-static void demi_growth_book(dem_world *w) {
+   against the tangential force, so that it does not count as a loss. sag: J, what normal laws will
+   lose by hysteresis in the next step, because the contact history is still that of before. */
+static void demi_growth_book(dem_world *w, double sag) {
     const double shear = demi_sum_energy(w, DEMI_E_SHEAR_STORED) -
         w->booked.energy[DEMI_E_SHEAR_STORED];
     const double work = demi_sum_energy(w, DEMI_E_ELASTIC) - w->booked.energy[DEMI_E_ELASTIC] +
-        shear;
+        shear + sag;
     w->booked.energy[DEMI_E_GROWTH] += work;
     w->booked.energy[DEMI_E_SHEAR_WORK] += shear;
     w->booked.throughput += fabs(work);
@@ -31419,16 +31477,17 @@ static void demi_growth_book(dem_world *w) {
 static void demi_ledger_book(dem_world *w) {
     static const int flows[] = {DEMI_E_DASHPOT, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_ROLL,
                                 DEMI_E_FORCE};
+    const double sag = w->stage.forces_valid ? 0 : demi_sum_energy(w, DEMI_E_DASHPOT);
     double walls = 0;
     size_t i;
     if (!w->desc.ledger) return;
     for (i = 0; i < sizeof flows/sizeof *flows; i++) {
-        const double part = demi_sum_energy(w, flows[i]);
+        const double part = demi_sum_energy(w, flows[i]) - (flows[i] == DEMI_E_DASHPOT ? sag : 0);
         w->booked.energy[flows[i]] += part;
         if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
     }
-    if (!w->stage.forces_valid) demi_growth_book(w);
-    w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
+    if (!w->stage.forces_valid) demi_growth_book(w, sag);
+    w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC) + sag;
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
         w->booked.energy[DEMI_E_TOLD] += fabs(demi_sum_energy(w, (int)i));
@@ -42897,6 +42956,7 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
         o->kept = 0;
     }
     w->domains[0].kept = total;
+    w->domain_count = DEMI_MAX(w->domain_count, 1);        /* of a world without a list so far */
     for (d = 1; d <= DEMI_DOMAINS; d++) w->kept_first[d] = total + come->contacts;
     return 1;
 }
@@ -43856,6 +43916,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->effects.rolling = from->effects.rolling;
     w->effects.sticks = from->effects.sticks;
     w->effects.twisting = from->effects.twisting;
+    w->memory_stride = from->memory_stride;     /* before its first list, too */
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
     w->events.n.on = from->events.n.on;
@@ -44086,6 +44147,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 typedef struct demi_slab_sums {
     int32_t index, walls;          /* of the slab; number of walls */
     uint64_t size, left;           /* bytes of the report; grains that outflow and outlets took */
+    int64_t contacts;              /* of bodies, in the last step */
     demi_booked booked;
 } demi_slab_sums;
 
@@ -44101,6 +44163,7 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     sums.walls = w->wall_count;
     sums.left = w->bodies.balance.left;
     sums.booked = w->booked;
+    for (i = 0; i < w->domain_count; i++) sums.contacts += w->domains[i].contacts;
     if (w->stage.list_valid) demi_met_look(w, sums.booked.met);
     ok = demi_message_put(h, out, &sums, sizeof sums);
     for (i = 0; i < w->wall_count && ok; i++)
@@ -44157,6 +44220,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     demi_rows_add(demi_booked_rows, &w->booked, &sums->booked);
     demi_crushed_add(&w->booked.crushed, &sums->booked.crushed);
     w->bodies.balance.left += sums->left;
+    w->domains[0].contacts += (int)sums->contacts;
     for (i = 0; i < sums->walls; i++) {
         dem_wall_loads part;
         demi_unpack(&from, &part, sizeof part);
@@ -44321,7 +44385,8 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         w->bodies.slot_count = i;
         return demi_no_memory(h, call);
     }
-    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;  /* those of the slabs take over */
+    for (k = 0; k < DEMI_DOMAINS; k++)          /* those of the slabs take over */
+        w->domains[k].kept = w->domains[k].contacts = 0;
     w->filed.count = 0;
     memset(w->filed.start, 0, ((size_t)w->filed.rows + 2)*sizeof(int32_t));
     memset(*seen, 0, (size_t)s->slots + 1);

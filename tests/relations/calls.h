@@ -14,7 +14,7 @@
 
 typedef struct rel_run rel_run;
 /* ---- world ---- */
-typedef struct rel_a_world { dem_world_desc d; } rel_a_world;
+typedef struct rel_a_world { dem_world_desc d; int domain_bodies; } rel_a_world;
 static const rel_field rel_f_world[] = {
     F(rel_a_world, d.gravity, VEC, VECTOR, 1, 0, -2), F(rel_a_world, d.domain, BOX, POINT, 1, 0, 0),
     F(rel_a_world, d.boundary, INT3, PER_AXIS, 0, 0, 0), FI(rel_a_world, d.planar),
@@ -33,7 +33,11 @@ static const rel_field rel_f_world[] = {
     FI(rel_a_world, d.cold_start), FI(rel_a_world, d.search), F(rel_a_world, d.skin, REAL, SCALAR, 1, 0, 0),
     FI(rel_a_world, d.rotation), FI(rel_a_world, d.ellipsoid_overlap), FI(rel_a_world, d.cluster_contacts),
     FI(rel_a_world, d.orientations), FN(rel_a_world, d.overlap_stop), FI(rel_a_world, d.ledger),
-    FI(rel_a_world, d.threads)
+    FI(rel_a_world, d.threads), F(rel_a_world, d.law_user, DATA, FIXED, 0, 0, 0),
+    F(rel_a_world, d.law_memory_names, TEXT, FIXED, 0, 0, 0), F(rel_a_world, d.law_rate, CODE, FIXED, 0, 0, 0),
+    F(rel_a_world, d.body_reals_user, DATA, FIXED, 0, 0, 0), F(rel_a_world, d.growth_user, DATA, FIXED, 0, 0, 0),
+    F(rel_a_world, d.force_user, DATA, FIXED, 0, 0, 0), FI(rel_a_world, d.allow_large_dt),
+    FI(rel_a_world, d.unsolved_stops), FI(rel_a_world, domain_bodies)      /* of a work group: groups.h */
 };
 /* ---- materials ---- */
 typedef struct rel_a_material { dem_material_desc d; } rel_a_material;
@@ -51,7 +55,10 @@ static const rel_field rel_f_pair[] = {
     FREF(rel_a_pair, a), FREF(rel_a_pair, b), FN(rel_a_pair, d.restitution), FN(rel_a_pair, d.friction),
     FN(rel_a_pair, d.rolling_friction), FN(rel_a_pair, d.spinning_friction), FI(rel_a_pair, d.ignored),
     F(rel_a_pair, d.cohesion, REAL, SCALAR, 1, 1, -2), F(rel_a_pair, d.compliance, REAL, SCALAR, 0, -1, 2),
-    F(rel_a_pair, d.normal_damping, REAL, SCALAR, 0, 1, -1), F(rel_a_pair, d.tangent_damping, REAL, SCALAR, 0, 1, -1)
+    F(rel_a_pair, d.normal_damping, REAL, SCALAR, 0, 1, -1), FN(rel_a_pair, d.tangent_damping),
+    F(rel_a_pair, d.young_eff, REAL, SCALAR, -1, 1, -2), F(rel_a_pair, d.shear_eff, REAL, SCALAR, -1, 1, -2),
+    FN(rel_a_pair, d.friction_static), F(rel_a_pair, d.stiffness, REAL, SCALAR, 0, 1, -2),
+    FN(rel_a_pair, d.stiffness_ratio), F(rel_a_pair, d.stiffness_adhesion, REAL, SCALAR, 0, 1, -2)
 };
 /* starts from the pair as it is: only fields that are set change */
 static int32_t rel_do_pair(dem_world *w, void *at) {
@@ -72,11 +79,13 @@ static int32_t rel_do_ellipsoid(dem_world *w, void *a) { return dem_shape_ellips
 typedef struct rel_a_cluster { rel_reals positions, radii; dem_cluster_desc d; } rel_a_cluster;
 static const rel_field rel_f_cluster[] = {
     F(rel_a_cluster, positions, REALS, IN_BODY, 1, 0, 0), F(rel_a_cluster, radii, REALS, SCALAR, 1, 0, 0),
-    FI(rel_a_cluster, d.mass), FI(rel_a_cluster, d.rays)
+    FI(rel_a_cluster, d.mass), FI(rel_a_cluster, d.rays), F(rel_a_cluster, d.radius, REAL, SCALAR, 1, 0, 0),
+    F(rel_a_cluster, d.volume, REAL, SCALAR, 3, 0, 0), F(rel_a_cluster, d.centre, VEC, IN_BODY, 1, 0, 0),
+    F(rel_a_cluster, d.inertia, REAL_ARRAY, SCALAR, 5, 0, 0)               /* drawn diagonal: mirrors keep it */
 };
 static int32_t rel_do_cluster(dem_world *w, void *at) {
     rel_a_cluster *a = (rel_a_cluster *)at;
-    a->d.count = a->radii.count;
+    a->d.count = a->positions.count/3;
     a->d.positions = a->positions.at;
     a->d.radii = a->radii.at;
     return dem_shape_cluster_add(w, &a->d).id;
@@ -88,18 +97,19 @@ static int32_t rel_do_polyhedron(dem_world *w, void *at) {
     return dem_shape_polyhedron_add(w, a->points.count/3, a->points.at).id;
 }
 typedef struct rel_a_polygon { rel_reals corners; } rel_a_polygon;
-static const rel_field rel_f_polygon[] = {F(rel_a_polygon, corners, REALS, FIXED, 1, 0, 0)};
+static const rel_field rel_f_polygon[] = {F(rel_a_polygon, corners, REALS, IN_BODY_2, 1, 0, 0)};
 static int32_t rel_do_polygon(dem_world *w, void *at) {
     rel_a_polygon *a = (rel_a_polygon *)at;
     return dem_shape_polygon_add(w, a->corners.count/2, a->corners.at).id;
 }
-typedef struct rel_a_union { dem_shape shapes[8]; int shapes_count; rel_reals positions, orientations; } rel_a_union;
+typedef struct rel_a_union { dem_shape shapes[8]; rel_reals positions, orientations; } rel_a_union;
 static const rel_field rel_f_union[] = {
-    F(rel_a_union, shapes, REF_ARRAY, SCALAR, 0, 0, 0), F(rel_a_union, positions, REALS, IN_BODY, 1, 0, 0)
+    F(rel_a_union, shapes, REF_ARRAY, SCALAR, 0, 0, 0), F(rel_a_union, positions, REALS, IN_BODY, 1, 0, 0),
+    F(rel_a_union, orientations, REALS, TURN_IN_BODY, 0, 0, 0)
 };
 static int32_t rel_do_union(dem_world *w, void *at) {
     rel_a_union *a = (rel_a_union *)at;
-    return dem_shape_union_add(w, a->positions.count/3, a->shapes, a->positions.at, 0).id;
+    return dem_shape_union_add(w, a->positions.count/3, a->shapes, a->positions.at, a->orientations.at).id;
 }
 /* ---- bodies: a sphere if shape is not set ---- */
 typedef struct rel_a_body {
@@ -160,7 +170,7 @@ static int32_t rel_do_kick(dem_world *w, void *at) {
     return dem_bodies_velocity_set(w, &s, a->velocity, a->spin) == 1;
 }
 static const rel_field rel_f_rail[] = {
-    F(rel_a_of_body, body, BODY, SCALAR, 0, 0, 0), F(rel_a_of_body, d.axes, INT, FIXED, 0, 0, 0),
+    F(rel_a_of_body, body, BODY, SCALAR, 0, 0, 0), F(rel_a_of_body, d.axes, INT, AXES, 0, 0, 0),
     F(rel_a_of_body, d.velocity, VEC, VECTOR, 1, 0, -1), F(rel_a_of_body, d.spin, VEC, AXIAL, 0, 0, -1),
     FREF(rel_a_of_body, d.wall)
 };
@@ -214,7 +224,7 @@ static int32_t rel_do_mesh(dem_world *w, void *at) {
     mesh.triangles = a->triangles.at;
     return dem_wall_mesh_add(w, a->material, &mesh).id;
 }
-static const rel_field rel_f_profile[] = {FREF(rel_a_wall, material), FW(vertices, REALS, FIXED, 1, 0, 0),
+static const rel_field rel_f_profile[] = {FREF(rel_a_wall, material), FW(vertices, REALS, POINT_2, 1, 0, 0),
                                           FW(triangles, INTS, SCALAR, 0, 0, 0), FI(rel_a_wall, rule)};
 static int32_t rel_do_profile(dem_world *w, void *at) {
     rel_a_wall *a = (rel_a_wall *)at;
@@ -228,7 +238,7 @@ static int32_t rel_do_profile(dem_world *w, void *at) {
 static const rel_field rel_f_grains[] = {FREF(rel_a_wall, material), FW(vertices, REALS, POINT, 1, 0, 0),
                                          FW(radius, REAL, SCALAR, 1, 0, 0), FN(rel_a_wall, share)};
 static const rel_a_wall rel_wall_0 = {{0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 0}, 0, 0, 1, 1, 0, {0, 0}, {0, 0},
-                                      {0, 0}, {0, 0}, DEM_ZERO};
+                                      {0, 0}, {0, 0}};          /* d: DEM_ZERO */
 static int32_t rel_do_grains(dem_world *w, void *at) {
     rel_a_wall *a = (rel_a_wall *)at;
     return dem_wall_grains_add(w, a->material, a->vertices.count/3, a->vertices.at, a->radius, a->share).id;
@@ -237,25 +247,52 @@ static const rel_field rel_f_sieve[] = {
     FREF(rel_a_wall, material), FI(rel_a_wall, d.kind), FW(d.point, VEC, POINT, 1, 0, 0),
     FW(d.normal, VEC, VECTOR, 0, 0, 0), FW(d.along, VEC, VECTOR, 0, 0, 0), FW(d.aperture, REAL, SCALAR, 1, 0, 0),
     FW(d.bar, REAL, SCALAR, 1, 0, 0), FW(d.length, REAL, SCALAR, 1, 0, 0), FW(d.thickness, REAL, SCALAR, 1, 0, 0),
-    FW(d.lift, REAL, SCALAR, 1, 0, 0), FI(rel_a_wall, d.staggered), FW(d.radius, REAL, SCALAR, 1, 0, 0)
+    FW(d.lift, REAL, SCALAR, 1, 0, 0), FI(rel_a_wall, d.staggered), FW(d.radius, REAL, SCALAR, 1, 0, 0),
+    FI(rel_a_wall, d.model), FN(rel_a_wall, d.clearance)
 };
 static int32_t rel_do_sieve(dem_world *w, void *at) {
     rel_a_wall *a = (rel_a_wall *)at;
     return dem_wall_sieve_add(w, a->material, &a->d).id;
 }
-typedef struct rel_a_motion { dem_wall wall; dem_vec3 velocity; dem_motion d; } rel_a_motion;
-static const rel_field rel_f_motion[] = {
-    FREF(rel_a_motion, wall), FI(rel_a_motion, d.kind), F(rel_a_motion, d.velocity, VEC, VECTOR, 1, 0, -1),
-    F(rel_a_motion, d.point, VEC, POINT, 1, 0, 0), F(rel_a_motion, d.axis, VEC, VECTOR, 0, 0, 0),
-    F(rel_a_motion, d.speed, REAL, FIXED, 0, 0, -1), F(rel_a_motion, d.amplitude, REAL, SCALAR, 1, 0, 0),
-    F(rel_a_motion, d.frequency, REAL, SCALAR, 0, 0, -1), FN(rel_a_motion, d.phase),
-    F(rel_a_motion, d.start, DOUBLE, SCALAR, 0, 0, 1), F(rel_a_motion, d.ramp, DOUBLE, SCALAR, 0, 0, 1),
-    F(rel_a_motion, d.load, REAL, SCALAR, 1, 1, -2), F(rel_a_motion, d.travel, REAL, SCALAR, 1, 0, 0),
-    F(rel_a_motion, d.function, CODE, FIXED, 0, 0, 0)
+typedef struct rel_a_motion {
+    dem_wall wall;
+    dem_vec3 velocity;
+    dem_motion d;
+    rel_reals times, places, turns, loads;
+} rel_a_motion;
+#define REL_MOTION_FIELDS \
+    FREF(rel_a_motion, wall), FI(rel_a_motion, d.kind), F(rel_a_motion, d.velocity, VEC, VECTOR, 1, 0, -1), \
+    F(rel_a_motion, d.point, VEC, POINT, 1, 0, 0), F(rel_a_motion, d.axis, VEC, VECTOR, 0, 0, 0), \
+    F(rel_a_motion, d.speed, REAL, FIXED, 0, 0, -1), F(rel_a_motion, d.amplitude, REAL, SCALAR, 1, 0, 0), \
+    F(rel_a_motion, d.frequency, REAL, SCALAR, 0, 0, -1), FN(rel_a_motion, d.phase), \
+    F(rel_a_motion, d.start, DOUBLE, SCALAR, 0, 0, 1), F(rel_a_motion, d.ramp, DOUBLE, SCALAR, 0, 0, 1), \
+    F(rel_a_motion, d.load, REAL, SCALAR, 1, 1, -2), F(rel_a_motion, d.travel, REAL, SCALAR, 1, 0, 0), \
+    F(rel_a_motion, d.function, CODE, FIXED, 0, 0, 0), F(rel_a_motion, d.user, DATA, FIXED, 0, 0, 0), \
+    F(rel_a_motion, d.area, REAL, SCALAR, 2, 0, 0), FI(rel_a_motion, d.table_repeats)
+static const rel_field rel_f_motion[] = {REL_MOTION_FIELDS};
+static const rel_field rel_f_table[] = {
+    REL_MOTION_FIELDS, F(rel_a_motion, times, REALS, SCALAR, 0, 0, 1), F(rel_a_motion, places, REALS, VECTOR, 1, 0, 0),
+    F(rel_a_motion, turns, REALS, TURN, 0, 0, 0), F(rel_a_motion, loads, REALS, SCALAR, 1, 1, -2)
 };
-static const rel_a_motion rel_motion_0 = {{0}, {0, 0, 0}, DEM_ZERO};
+static const rel_a_motion rel_motion_0 = {{0}, {0, 0, 0}, DEM_ZERO, {0, 0}, {0, 0}, {0, 0}, {0, 0}};
 static int32_t rel_do_motion(dem_world *w, void *at) {
     rel_a_motion *a = (rel_a_motion *)at;
+    return dem_wall_motion_set(w, a->wall, &a->d) == DEM_OK;
+}
+static int32_t rel_do_table(dem_world *w, void *at) {
+    rel_a_motion *a = (rel_a_motion *)at;
+    dem_motion_row row[8];
+    int k;
+    memset(row, 0, sizeof row);
+    for (k = 0; k < a->times.count && k < 8; k++) {
+        const dem_real *x = a->places.at + 3*k, *q = a->turns.at + 4*k;
+        row[k].time = (double)a->times.at[k];
+        row[k].position = dem_vec3_make(x[0], x[1], x[2]);
+        row[k].rotation = dem_quat_make(q[0], q[1], q[2], q[3]);
+        row[k].load = a->loads.at[k];
+    }
+    a->d.table = row;
+    a->d.table_count = k;
     return dem_wall_motion_set(w, a->wall, &a->d) == DEM_OK;
 }
 static const rel_field rel_f_belt[] = {FREF(rel_a_motion, wall), F(rel_a_motion, velocity, VEC, VECTOR, 1, 0, -1)};
@@ -276,27 +313,49 @@ static const rel_field rel_f_joint[] = {
     F(rel_a_joint, d.speed, REAL, SCALAR, 0, 0, -1), F(rel_a_joint, d.torque, REAL, SCALAR, 2, 1, -2)
 };
 static int32_t rel_do_joint(dem_world *w, void *at) { return dem_joint_add(w, &((rel_a_joint *)at)->d).id; }
-typedef struct rel_a_feed { dem_feed_desc d; } rel_a_feed;
-static const rel_field rel_f_feed[] = {
-    FREF(rel_a_feed, d.material), FI(rel_a_feed, d.class_count), F(rel_a_feed, d.radius, REAL_ARRAY, SCALAR, 1, 0, 0),
-    F(rel_a_feed, d.amount, DOUBLE_ARRAY, SCALAR, 0, 0, 0), FI(rel_a_feed, d.limited),
-    F(rel_a_feed, d.rate, DOUBLE, SCALAR, 0, 0, -1), F(rel_a_feed, d.start, DOUBLE, SCALAR, 0, 0, 1),
-    F(rel_a_feed, d.box, BOX, POINT, 1, 0, 0), FI(rel_a_feed, d.round),
-    F(rel_a_feed, d.velocity, VEC, VECTOR, 1, 0, -1), F(rel_a_feed, d.spread, REAL, SCALAR, 1, 0, -1),
-    F(rel_a_feed, d.shapes, REF_ARRAY, SCALAR, 0, 0, 0)
+typedef struct rel_a_feed { dem_feed_desc d; dem_sizes sizes; } rel_a_feed;
+#define REL_FEED_FIELDS \
+    FREF(rel_a_feed, d.material), FI(rel_a_feed, d.class_count), F(rel_a_feed, d.radius, REAL_ARRAY, SCALAR, 1, 0, 0), \
+    F(rel_a_feed, d.amount, DOUBLE_ARRAY, SCALAR, 0, 0, 0), FI(rel_a_feed, d.limited), \
+    F(rel_a_feed, d.rate, DOUBLE, SCALAR, 0, 0, -1), F(rel_a_feed, d.start, DOUBLE, SCALAR, 0, 0, 1), \
+    F(rel_a_feed, d.box, BOX, POINT, 1, 0, 0), FI(rel_a_feed, d.round), \
+    F(rel_a_feed, d.velocity, VEC, VECTOR, 1, 0, -1), F(rel_a_feed, d.spread, REAL, SCALAR, 1, 0, -1), \
+    F(rel_a_feed, d.shapes, REF_ARRAY, SCALAR, 0, 0, 0), F(rel_a_feed, d.materials, REF_ARRAY, SCALAR, 0, 0, 0), \
+    FI(rel_a_feed, d.by_mass), F(rel_a_feed, d.end, DOUBLE, SCALAR, 0, 0, 1), F(rel_a_feed, d.seed, WHOLE, SCALAR, 0, 0, 0), \
+    F(rel_a_feed, d.inside, CODE, FIXED, 0, 0, 0), F(rel_a_feed, d.inside_user, DATA, FIXED, 0, 0, 0), \
+    F(rel_a_feed, d.amount, DOUBLE_ARRAY, SCALAR, 0, 1, 0), F(rel_a_feed, d.rate, DOUBLE, SCALAR, 0, 1, -1)    /* by mass */
+static const rel_field rel_f_feed[] = {REL_FEED_FIELDS};
+static const rel_field rel_f_feed_sizes[] = {
+    REL_FEED_FIELDS, FI(rel_a_feed, sizes.kind), FI(rel_a_feed, sizes.by_count), F(rel_a_feed, sizes.min, REAL, SCALAR, 1, 0, 0),
+    F(rel_a_feed, sizes.max, REAL, SCALAR, 1, 0, 0), F(rel_a_feed, sizes.median, REAL, SCALAR, 1, 0, 0),
+    F(rel_a_feed, sizes.spread, DOUBLE, SCALAR, 0, 0, 0), F(rel_a_feed, sizes.scale, REAL, SCALAR, 1, 0, 0),
+    F(rel_a_feed, sizes.modulus, DOUBLE, SCALAR, 0, 0, 0), F(rel_a_feed, sizes.deviation, REAL, SCALAR, 1, 0, 0),
+    FI(rel_a_feed, sizes.count), F(rel_a_feed, sizes.radius, REAL_ARRAY, SCALAR, 1, 0, 0),
+    F(rel_a_feed, sizes.passing, DOUBLE_ARRAY, SCALAR, 0, 0, 0)
 };
 static int32_t rel_do_feed(dem_world *w, void *at) { return dem_feed_add(w, &((rel_a_feed *)at)->d).id; }
+static int32_t rel_do_feed_sizes(dem_world *w, void *at) {
+    rel_a_feed *a = (rel_a_feed *)at;
+    a->d.sizes[0] = &a->sizes;
+    return dem_feed_add(w, &a->d).id;
+}
 typedef struct rel_a_outlet { dem_outlet_desc d; } rel_a_outlet;
 static const rel_field rel_f_outlet[] = {
     FREF(rel_a_outlet, d.frame), F(rel_a_outlet, d.box, BOX, POINT, 1, 0, 0), FI(rel_a_outlet, d.keep),
-    F(rel_a_outlet, d.residence_bin, DOUBLE, SCALAR, 0, 0, 1), FREF(rel_a_outlet, d.material)
+    F(rel_a_outlet, d.residence_bin, DOUBLE, SCALAR, 0, 0, 1), FREF(rel_a_outlet, d.material),
+    F(rel_a_outlet, d.beyond, REAL, SCALAR, 1, 0, 0), F(rel_a_outlet, d.wanted_min, REAL, SCALAR, 1, 0, 0),
+    F(rel_a_outlet, d.wanted_max, REAL, SCALAR, 1, 0, 0), FI(rel_a_outlet, d.class_count),
+    F(rel_a_outlet, d.radius, REAL_ARRAY, SCALAR, 1, 0, 0)
 };
 static int32_t rel_do_outlet(dem_world *w, void *at) { return dem_outlet_add(w, &((rel_a_outlet *)at)->d).id; }
 typedef struct rel_a_field { dem_field_desc d; } rel_a_field;
 static const rel_field rel_f_field[] = {
     F(rel_a_field, d.box, BOX, POINT, 1, 0, 0), F(rel_a_field, d.cells, INT3, PER_AXIS, 0, 0, 0),
     F(rel_a_field, d.interval, DOUBLE, SCALAR, 0, 0, 1), FI(rel_a_field, d.stress),
-    F(rel_a_field, d.width, REAL, SCALAR, 1, 0, 0), FI(rel_a_field, d.variance)
+    F(rel_a_field, d.width, REAL, SCALAR, 1, 0, 0), FI(rel_a_field, d.variance), F(rel_a_field, d.start, DOUBLE, SCALAR, 0, 0, 1),
+    F(rel_a_field, d.end, DOUBLE, SCALAR, 0, 0, 1), FREF(rel_a_field, d.material),
+    F(rel_a_field, d.radius_min, REAL, SCALAR, 1, 0, 0), F(rel_a_field, d.radius_max, REAL, SCALAR, 1, 0, 0),
+    FI(rel_a_field, d.group.id), FI(rel_a_field, d.bodies)
 };
 static int32_t rel_do_field(dem_world *w, void *at) { return dem_field_add(w, &((rel_a_field *)at)->d).id; }
 typedef struct rel_a_later { dem_vec3 gravity; dem_real dt; dem_cell_desc d; } rel_a_later;
@@ -310,6 +369,37 @@ static const rel_field rel_f_cell[] = {
 };
 static int32_t rel_do_cell(dem_world *w, void *at) { return dem_cell_set(w, &((rel_a_later *)at)->d) == DEM_OK; }
 
+/* ---- selections of bodies ---- */
+typedef struct rel_a_select { dem_selection d; dem_region region; dem_vec3 velocity, spin; int group; dem_real gap; } rel_a_select;
+#define REL_SELECTION \
+    FI(rel_a_select, d.group.id), FREF(rel_a_select, d.material), FREF(rel_a_select, d.shape), \
+    F(rel_a_select, d.radius_min, REAL, SCALAR, 1, 0, 0), F(rel_a_select, d.radius_max, REAL, SCALAR, 1, 0, 0)
+static const rel_field rel_f_push[] = {
+    REL_SELECTION, F(rel_a_select, region.box, BOX, POINT, 1, 0, 0), FI(rel_a_select, region.cylinder),
+    F(rel_a_select, region.inside, CODE, FIXED, 0, 0, 0), F(rel_a_select, region.user, DATA, FIXED, 0, 0, 0),
+    F(rel_a_select, velocity, VEC, VECTOR, 1, 0, -1), F(rel_a_select, spin, VEC, AXIAL, 0, 0, -1)
+};
+static int32_t rel_do_push(dem_world *w, void *at) {
+    rel_a_select *a = (rel_a_select *)at;
+    a->d.region = &a->region;
+    return dem_bodies_velocity_set(w, &a->d, a->velocity, a->spin) >= 0;
+}
+static const rel_field rel_f_group[] = {REL_SELECTION, FI(rel_a_select, group)};
+static int32_t rel_do_group(dem_world *w, void *at) {
+    rel_a_select *a = (rel_a_select *)at;
+    dem_group group;
+    group.id = a->group;
+    return dem_bodies_group_set(w, &a->d, group, 1) >= 0;
+}
+static const rel_field rel_f_bonds[] = {F(rel_a_select, gap, REAL, SCALAR, 1, 0, 0)};
+static int32_t rel_do_bonds(dem_world *w, void *at) {
+    return dem_bonds_make(w, ((rel_a_select *)at)->gap, bond_make, w) >= 0;
+}
+
+static const rel_a_feed rel_feed_sizes_0 = {DEM_ZERO, DEM_ZERO};
+static const rel_a_select rel_select_0 = {DEM_ZERO, DEM_ZERO, {0, 0, 0}, {0, 0, 0}, 1, 0};
+
+#include "calls_services.h"
 /* makes: the letter of the variable that holds its result in a printed program; 0: none. desc: type and name of the
    default of `d`. text: the call, where $name is a value. */
 typedef struct rel_call {
@@ -324,7 +414,8 @@ typedef struct rel_call {
 enum { REL_WORLD, REL_MATERIAL, REL_PAIR, REL_ELLIPSOID, REL_CLUSTER, REL_POLYHEDRON, REL_POLYGON, REL_UNION, REL_A_BODY,
        REL_REMOVE, REL_RESIZE, REL_FIX, REL_KICK, REL_RAIL, REL_PLANE, REL_CYLINDER, REL_REVOLVED, REL_CONE, REL_MESH,
        REL_PROFILE, REL_GRAINS, REL_SIEVE, REL_MOTION, REL_BELT, REL_WALL_REMOVE, REL_JOINT, REL_FEED, REL_OUTLET,
-       REL_FIELD, REL_GRAVITY, REL_CELL, REL_CALLS };
+       REL_FIELD, REL_GRAVITY, REL_CELL, REL_TABLE, REL_FEED_SIZES, REL_PUSH, REL_GROUP, REL_BONDS, REL_SERVICE_NAMES,
+       REL_CALLS };
 #define C_(name, A, zero_at, makes, type, desc, zero, text) \
     {"dem_" #name, rel_f_##name, REL_N(rel_f_##name), sizeof(A), zero_at, rel_do_##name, makes, type, desc, zero, text}
 static int32_t rel_do_world(dem_world *w, void *at) { (void)w; (void)at; return 1; }        /* run.h creates it */
@@ -337,7 +428,7 @@ static const rel_call rel_calls[REL_CALLS] = {
     C_(cluster, rel_a_cluster, 0, "s", "dem_shape", "dem_cluster_desc", "DEM_CLUSTER_DESC", "dem_shape_cluster_add(w, &d)"),
     C_(polyhedron, rel_a_polyhedron, 0, "s", "dem_shape", "", "", "dem_shape_polyhedron_add(w, #points/3, $points)"),
     C_(polygon, rel_a_polygon, 0, "s", "dem_shape", "", "", "dem_shape_polygon_add(w, #corners/2, $corners)"),
-    C_(union, rel_a_union, 0, "s", "dem_shape", "", "", "dem_shape_union_add(w, #positions/3, $shapes, $positions, 0)"),
+    C_(union, rel_a_union, 0, "s", "dem_shape", "", "", "dem_shape_union_add(w, #positions/3, $shapes, $positions, $orientations)"),
     C_(body, rel_a_body, &rel_body_0, "b", "dem_body", "", "", ""),             /* print.h writes it */
     C_(remove, rel_a_of_body, 0, "", "", "", "", "dem_body_remove(w, $body)"),
     C_(resize, rel_a_of_body, 0, "", "", "", "", "dem_body_radius_set(w, $body, $radius)"),
@@ -368,7 +459,17 @@ static const rel_call rel_calls[REL_CALLS] = {
        "dem_outlet_add(w, &d)"),
     C_(field, rel_a_field, &DEM_FIELD_DESC, "g", "dem_field", "dem_field_desc", "DEM_FIELD_DESC", "dem_field_add(w, &d)"),
     C_(gravity, rel_a_later, 0, "", "", "", "", "dem_world_gravity_set(w, $gravity)"),
-    C_(cell, rel_a_later, 0, "", "", "dem_cell_desc", "DEM_CELL_DESC", "dem_cell_set(w, &d)")
+    C_(cell, rel_a_later, 0, "", "", "dem_cell_desc", "DEM_CELL_DESC", "dem_cell_set(w, &d)"),
+    C_(table, rel_a_motion, &rel_motion_0, "", "", "dem_motion", "DEM_MOTION",
+       "table(w, $wall, &d, #times, $times, $places, $turns, $loads)"),
+    C_(feed_sizes, rel_a_feed, &rel_feed_sizes_0, "f", "dem_feed", "dem_sizes sizes = DEM_SIZES; dem_feed_desc", "DEM_FEED_DESC",
+       "(d.sizes[0] = &sizes, dem_feed_add(w, &d))"),
+    C_(push, rel_a_select, &rel_select_0, "", "", "dem_region region = DEM_REGION; dem_selection", "DEM_SELECTION",
+       "d.region = &region; dem_bodies_velocity_set(w, &d, $velocity, $spin)"),
+    C_(group, rel_a_select, &rel_select_0, "", "", "dem_selection", "DEM_SELECTION",
+       "dem_bodies_group_set(w, &d, (dem_group){$group}, 1)"),
+    C_(bonds, rel_a_select, &rel_select_0, "", "", "", "", "dem_bonds_make(w, $gap, bond_make, w)"),
+    REL_SERVICE_CALLS
 };
 
 /* The field of a call by name, with or without "d.". */

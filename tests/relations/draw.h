@@ -11,7 +11,9 @@ typedef struct rel_draw {
     rel_rng *r;
     int feature;                               /* the row being added */
     double R, a, h;                            /* m: radius; half width and height of the container */
-    int planar, impulses, periodic, round, bumps, moved;
+    int planar, impulses, periodic, round, bumps, moved, scaled;
+    int attempt;                               /* how often nothing happened in this scene */
+    double top;                                /* m: no body is above it at first */
     int material[3], materials;
     int shape[12]; double reach[12]; int shapes;             /* op, -1: sphere; bounding radius, m */
     int wall[16], walls, container;            /* ops; how many of them belong to the container */
@@ -67,7 +69,7 @@ static int rel_impulses(rel_draw *d) {
     d->impulses = 1;
     rel_put(rel_the_world(d), "response", DEM_RESPONSE_IMPULSES);
     rel_put(rel_the_world(d), "dt", rel_vary(d, 1e-4, 5e-4));
-    rel_put(rel_the_world(d), "tolerance", 1e-9);
+    rel_put(rel_the_world(d), "tolerance", sizeof(dem_real) == sizeof(double) ? 1e-9 : 1e-5);
     rel_put(rel_the_world(d), "sweeps", 2000);
     d->s->steps = 30 + rel_any(d, 60);
     return 1;
@@ -359,6 +361,7 @@ static int rel_revolved(rel_draw *d) {
     c = rel_add(d, REL_REVOLVED, 0);
     rel_put(c, "material", rel_stuff(d));
     rel_put3(c, "axis", 0, 0, 1);
+    if (rel_chance(d->r, 0.3)) rel_put3(c, "point", 0.05*d->R, 0, -0.1*d->R);
     rel_list(d, c, "radii", r, 4);
     rel_list(d, c, "heights", z, 4);
     rel_wall(d, c);
@@ -390,25 +393,23 @@ static int rel_grains(rel_draw *d) {
     rel_put(g, "material", rel_stuff(d));
     rel_list(d, g, "vertices", x, k);
     rel_put(g, "radius", 0.9*d->R);
+    if (rel_chance(d->r, 0.3)) rel_put(g, "share", 0.5);
     rel_wall(d, g);
     rel_plane_at(d, 0, 0, -d->R, 0, 0, 1);
     rel_sides(d);
     return 1;
 }
 static int rel_sieve(rel_draw *d) {
-    static const int kinds[] = {DEM_SIEVE_WIRES, DEM_SIEVE_BARS, DEM_SIEVE_SQUARE, DEM_SIEVE_ROUND, DEM_SIEVE_SLOTS,
-                                DEM_SIEVE_REDUCED};
-    const int kind = kinds[rel_any(d, 6)];
     rel_op *g;
     if (d->planar || d->periodic) return 0;
     g = rel_add(d, REL_SIEVE, 0);
     rel_put(g, "material", rel_stuff(d));
-    rel_put(g, "kind", kind);
+    rel_put(g, "kind", DEM_SIEVE_WIRES);       /* or as a later row says */
+    if (rel_chance(d->r, 0.3)) rel_put3(g, "d.point", 0.3*d->R, 0.2*d->R, 0);
     rel_put3(g, "normal", 0, 0, 1);
     rel_put3(g, "along", 1, 0, 0);
     rel_put(g, "aperture", rel_vary(d, 1, 1.8)*d->R);
     rel_put(g, "bar", rel_vary(d, 0.4, 0.8)*d->R);
-    if (kind == DEM_SIEVE_SLOTS) rel_put(g, "length", 4*d->R);
     rel_wall(d, g);
     rel_plane_at(d, 0, 0, -4*d->R, 0, 0, 1);
     rel_sides(d);
@@ -432,6 +433,7 @@ static void rel_one_body(rel_draw *d, double x, double y, double z, double speed
     if (shape >= 0) {
         rel_set *q;
         rel_put(b, "shape", shape);
+        if (d->scaled) rel_put(b, "scale", rel_vary(d, 0.6, 1));
         q = rel_slot(b, "orientation");
         q->v[0] = rel_vary(d, 0.2, 1);
         q->v[1] = d->planar ? 0 : rel_vary(d, -1, 1);
@@ -446,7 +448,7 @@ static void rel_one_body(rel_draw *d, double x, double y, double z, double speed
 }
 static int rel_fill(rel_draw *d) {
     const int most = 2 + rel_any(d, rel_chance(d->r, 0.3) ? 40 : 12);
-    const double speed = rel_vary(d, 0.1, 0.8);
+    const double speed = rel_vary(d, 0.1, 0.8)*(1 + 2*d->attempt);
     double reach = 0, step, low, x, y, z;
     int i;
     for (i = 0; i < d->shapes; i++) reach = d->reach[i] > reach ? d->reach[i] : reach;
@@ -458,6 +460,7 @@ static int rel_fill(rel_draw *d) {
                 const double v = d->planar ? y - d->h/2 : y, room = (d->planar && d->round ? d->h/2 : d->a) - 1.1*reach;
                 if (d->round && x*x + v*v > room*room) continue;
                 rel_one_body(d, x, y, d->planar ? 0 : z, speed);
+                d->top = z + reach;
             }
     return d->bodies > 0;
 }
@@ -484,6 +487,7 @@ static int rel_rotating(rel_draw *d) {
     if (!m) return 0;
     rel_put3(m, "axis", 0, 0, 1);
     rel_put(m, "speed", rel_vary(d, -20, 20));
+    if (rel_chance(d->r, 0.3)) rel_put3(m, "point", 0.2*d->R, 0.1*d->R, 0);
     return 1;
 }
 static int rel_oscillating(rel_draw *d) {
@@ -626,11 +630,13 @@ static int rel_cell(rel_draw *d) {
     rel_op *c;
     if (d->periodic != (d->planar ? 3 : 7)) return 0;
     c = rel_add(d, REL_CELL, rel_chance(d->r, 0.3) ? rel_when(d) : 0);
-    if (rel_chance(d->r, 0.5)) rel_put3(c, "rate", rel_vary(d, -2, 2), rel_vary(d, -2, 2), 0);
-    else rel_put(c, "shear", rel_vary(d, -5, 5));
+    rel_put3(c, "rate", rel_vary(d, -2, 2), rel_vary(d, -2, 2), 0);
     return 1;
 }
+#include "draw_more.h"
 
+#include "draw_services.h"
+#include "draw_later.h"
 /* ---- the rows, in the order in which they are tried ---- */
 typedef struct rel_feature {
     const char *name;
@@ -639,11 +645,12 @@ typedef struct rel_feature {
     int (*add)(rel_draw *d);
     int acts;                                  /* what must have happened: see rel_acted */
 } rel_feature;
-enum { REL_ACTS_ALWAYS, REL_ACTS_CONTACT, REL_ACTS_WALL, REL_ACTS_FED, REL_ACTS_GONE };
+enum { REL_ACTS_ALWAYS, REL_ACTS_CONTACT, REL_ACTS_WALL, REL_ACTS_FED, REL_ACTS_GONE, REL_ACTS_TOOK };
 static const rel_feature rel_features[] = {
     {"springs", 1, 1, 0, rel_springs, REL_ACTS_CONTACT}, {"impulses", 1, 1, 0, rel_impulses, REL_ACTS_CONTACT},
     {"planar", 0, 0, 0.2, rel_planar, 0},
     {"linear", 2, 0, 0.2, rel_linear, 1}, {"hysteretic", 2, 0, 0.2, rel_hysteretic, 1}, {"own law", 2, 0, 0.15, rel_law, 1},
+    REL_ROWS_LAWS
     {"no tangent", 3, 0, 0.05, rel_no_tangent, 1}, {"viscous", 3, 0, 0.1, rel_viscous, 1},
     {"step friction", 3, 0, 0.1, rel_step_law, 1}, {"Mindlin", 3, 0, 0.1, rel_mindlin, 1},
     {"Mindlin rescaled", 3, 0, 0.1, rel_rescaled, 1},
@@ -665,22 +672,27 @@ static const rel_feature rel_features[] = {
     {"wide skin", 13, 0, 0.1, rel_skin_wide, 0},
     {"force", 14, 0, 0.1, rel_drag, 0}, {"body force", 14, 0, 0.1, rel_swirl, 0}, {"growth", 0, 0, 0.08, rel_growth, 0},
     {"numbers", 0, 0, 0.1, rel_numbers, 0},
+    REL_ROWS_WORLD
     {"gravity", 15, 0, 0.5, rel_gravity, 0}, {"tilted gravity", 15, 0, 0.3, rel_gravity_tilted, 0},
     {"material", 16, 1, 0, rel_material, 0}, {"two materials", 0, 0, 0.3, rel_two_materials, 0},
     {"stiffness", 0, 0, 0.2, rel_stiffness, 1}, {"rolling friction", 0, 0, 0.25, rel_rolling, 1},
     {"static friction", 0, 0, 0.15, rel_static, 1}, {"ignored pair", 0, 0, 0.2, rel_ignored, 0},
     {"cohesion", 0, 0, 0.15, rel_cohesion, 1}, {"compliance", 0, 0, 0.1, rel_compliance, 1},
     {"spinning friction", 0, 0, 0.15, rel_spinning, 1},
+    REL_ROWS_MATERIALS
     {"spheres", 17, 0, 0.5, rel_spheres, 1}, {"small spheres", 0, 0, 0.2, rel_spheres_small, 1},
     {"ellipsoids", 0, 0, 0.25, rel_ellipsoid, 1}, {"clusters of one", 0, 0, 0.1, rel_cluster_one, 1},
     {"clusters", 0, 0, 0.25, rel_cluster_many, 1}, {"cubes", 18, 0, 0.25, rel_cube, 1}, {"rocks", 18, 0, 0.2, rel_rock, 1},
     {"polygons", 0, 0, 0.4, rel_polygon, 1}, {"unions", 0, 0, 0.15, rel_union, 1},
+    REL_ROWS_SHAPES
     {"planes", 19, 1, 0, rel_planes, REL_ACTS_WALL}, {"flat mesh", 19, 1, 0, rel_mesh_flat, REL_ACTS_WALL},
     {"bumpy mesh", 19, 1, 0, rel_mesh_bumpy, REL_ACTS_WALL}, {"profile", 19, 1, 0, rel_profile, REL_ACTS_WALL},
     {"cylinder", 19, 1, 0, rel_cylinder, REL_ACTS_WALL}, {"revolved", 19, 1, 0, rel_revolved, REL_ACTS_WALL},
     {"cone", 19, 1, 0, rel_cone, REL_ACTS_WALL}, {"wall of grains", 19, 1, 0, rel_grains, REL_ACTS_WALL},
     {"sieve", 19, 1, 0, rel_sieve, REL_ACTS_WALL}, {"periodic floor", 19, 1, 0, rel_periodic_floor, REL_ACTS_WALL},
     {"periodic", 19, 1, 0, rel_periodic_all, 0}, {"open", 19, 1, 0, rel_open, 0},
+    REL_ROWS_CONTAINERS
+    REL_ROWS_WALLS
     {"bodies", 20, 1, 0, rel_fill, 0},
     {"translating", 0, 0, 0.12, rel_translating, REL_ACTS_WALL}, {"rotating", 0, 0, 0.12, rel_rotating, REL_ACTS_WALL},
     {"oscillating", 0, 0, 0.12, rel_oscillating, REL_ACTS_WALL}, {"user motion", 0, 0, 0.05, rel_nodding, REL_ACTS_WALL},
@@ -690,22 +702,55 @@ static const rel_feature rel_features[] = {
     {"point joint", 0, 0, 0.15, rel_joint_point, 0}, {"hinge", 0, 0, 0.15, rel_joint_hinge, 0}, {"motor", 0, 0, 0.1, rel_motor, 0},
     {"rail", 0, 0, 0.1, rel_rail, 0}, {"feed", 0, 0, 0.15, rel_feed, REL_ACTS_FED}, {"outlet", 0, 0, 0.1, rel_outlet, 0},
     {"average", 0, 0, 0.1, rel_average, 0}, {"cell", 0, 0, 0.4, rel_cell, 0},
-    {"wall removed", 0, 0, 0.08, rel_wall_gone, 0}
+    {"wall removed", 0, 0, 0.08, rel_wall_gone, 0},
+    REL_ROWS_LATER, REL_SERVICE_FEATURES,
+    {"second motion", 0, 0, 0.4, rel_second_motion, REL_ACTS_WALL}, {"fixed joint", 0, 0, 0.2, rel_joint_fixed, 0},
+    {"late average", 0, 0, 0.5, rel_average_late, 0}, {"bar", 0, 0, 0.4, rel_bar, 0},
+    {"pair later", 0, 0, 0.15, rel_pair_later, REL_ACTS_CONTACT}
 };
 enum { REL_ROWS = (int)(sizeof rel_features/sizeof *rel_features) };
 
-/* Draws a scene from a seed. Returns 0 if it has no bodies. */
-static int rel_draw_scene(rel_scene *s, uint64_t seed) {
+static int rel_row(const char *name) {
+    int i;
+    for (i = 0; i < REL_ROWS && strcmp(rel_features[i].name, name); i++) continue;
+    return i;
+}
+#include "rules.h"
+
+enum { REL_WORK = 3000, REL_LEAST_STEPS = 30 };
+/* Shortens a scene whose steps are expensive: many bodies, shapes, sweeps, or a new list in every step. */
+static void rel_limit_work(rel_scene *s, int attempt) {
+    double work = 0;
+    int i, steps;
+    for (i = 0; i < s->count; i++)
+        if (s->op[i].call == REL_A_BODY) work += rel_sets(&s->op[i], "shape") ? 4 : 1;
+    if (rel_sets(&s->op[0], "response")) work *= 8;
+    if (rel_sets(&s->op[0], "growth") && !rel_sets(&s->op[0], "growth_interval")) work *= 4;
+    steps = (int)(REL_WORK*(1 + attempt)/(work + 1));
+    if (steps < REL_LEAST_STEPS) steps = REL_LEAST_STEPS;
+    if (steps >= s->steps) return;
+    for (i = 1; i < s->count; i++)
+        if (s->op[i].step) s->op[i].step = 1 + (s->op[i].step - 1)*(steps - 1)/s->steps;
+    s->steps = steps;
+}
+
+/* Draws a scene from a seed; attempt: how often nothing happened in what was drawn from this seed. The rows that it shall
+   have are the same in all attempts. Returns 0 if it has no bodies. */
+static int rel_draw_again(rel_scene *s, uint64_t seed, int attempt) {
+    unsigned char chosen[REL_ROWS];
     rel_rng r;
     rel_draw d;
     int i, k, group = 0;
-    r.s = seed;
+    r.s = seed ^ 0x3c6ef372fe94f82au;
+    rel_choose(&r, chosen);
+    r.s = seed + (uint64_t)attempt*0x9e3779b97f4a7c15u;
     memset(s, 0, offsetof(rel_scene, op));
     memset(&d, 0, sizeof d);
     s->seed = seed;
     s->steps = 120 + rel_below(&r, 400);
     d.s = s;
     d.r = &r;
+    d.attempt = attempt;
     d.R = rel_between(&r, 0.7e-3, 1.5e-3);
     d.a = d.R*rel_between(&r, 4.5, 6.5);
     d.h = 2*d.a;
@@ -720,24 +765,36 @@ static int rel_draw_scene(rel_scene *s, uint64_t seed) {
             if (f->group == group) continue;
             for (k = i; k < REL_ROWS && rel_features[k].group == f->group; k++) continue;
             for (group = f->group;;) {
-                const int pick = i + rel_below(&r, k - i);
+                int pick = i + rel_below(&r, k - i), j, some = 0;
+                for (j = i; j < k; j++) if (chosen[j]) { pick = j; some++; }
                 d.feature = pick;
-                if (rel_features[pick].add(&d)) { s->has[pick] = 1; break; }
+                if ((some || rel_fits(chosen, pick)) && rel_fits(s->has, pick) && rel_features[pick].add(&d)) { s->has[pick] = 1; break; }
                 if (k - i == 1) return 0;
+                for (j = i; j < k && some; j++) chosen[j] = 0;         /* it does not suit */
             }
             continue;
         }
-        for (k = 0; k < i && f->group; k++) if (s->has[k] && rel_features[k].group == f->group) break;
-        if ((f->group && k < i) || !rel_chance(&r, f->chance)) continue;
+        if (!rel_fits(chosen, i) || !rel_fits(s->has, i) || !rel_has_needed(s->has, i)) continue;
+        if (!chosen[i] && !rel_chance(&r, f->chance)) continue;
         if (f->add(&d)) s->has[i] = 1;
     }
+    rel_limit_work(s, attempt);
     return 1;
 }
+/* What the ops of a row have written or recorded: bytes, contacts, or the number of calls. */
+static long rel_taken(const rel_run *r, int feature) {
+    long n = 0;
+    int i;
+    for (i = 0; i < r->s->count; i++) if (r->s->op[i].feature == feature) n += r->took[i];
+    return n;
+}
+static int rel_draw_scene(rel_scene *s, uint64_t seed) { return rel_draw_again(s, seed, 0); }
 static int rel_acted(const rel_run *r, int feature) {
     switch (rel_features[feature].acts) {
     case REL_ACTS_CONTACT: return r->contacts + r->wall_contacts > 0;
     case REL_ACTS_WALL: return r->wall_contacts > 0;
     case REL_ACTS_FED: return r->counts.inserted > (uint64_t)rel_bodies(r->s);
+    case REL_ACTS_TOOK: return rel_taken(r, feature) > 0;
     case REL_ACTS_GONE: return r->counts.removed > 0;
     default: return 1;
     }

@@ -3,10 +3,16 @@
 #define REL_EDIT_H
 #include "relate.h"
 
-/* Lists, references, the time step and what relations expect of each body stay. */
+/* Lists, references, the time step, the thickness of discs (0 means 1 m in all units), what functions read and what
+   relations expect of each body stay. */
 static int rel_needed(const rel_op *op, const rel_field *f) {
     if (f->type >= REL_REF && f->type <= REL_DOUBLE_ARRAY) return 1;
-    if (op->call == REL_WORLD) return !strcmp(f->name, "d.dt");
+    if (f->type == REL_PATH || op->call == REL_READ) return 1;
+    if (f->type == REL_DATA) return 1;         /* functions read it */
+    if (op->call == REL_WORLD)
+        return !strcmp(f->name, "d.dt") || (rel_given_in(op, "planar") && !strcmp(f->name, "d.thickness")) ||
+            (rel_given_in(op, "law") && (!strncmp(f->name, "d.law_", 6) || !strcmp(f->name, "d.body_reals"))) ||
+            (rel_given_in(op, "body_reals_fn") && !strcmp(f->name, "d.body_reals"));
     return op->call == REL_A_BODY && (!strcmp(f->name, "position") || !strcmp(f->name, "velocity"));
 }
 static const rel_field *rel_field_at(const rel_op *op, int j) { return &rel_calls[op->call].fields[op->set[j].field]; }
@@ -30,7 +36,8 @@ static void rel_drop_ops(rel_scene *s, int from, int to) {
             const rel_type type = rel_field_at(op, j)->type;
             rel_set *v = &op->set[j];
             if ((type == REL_REF || type == REL_BODY) && v->v[0] >= 0) gone = new_at[(int)v->v[0]] < 0;
-            for (k = 0; type == REL_REF_ARRAY && k < v->count; k++) gone |= new_at[(int)s->pool[v->at + k]] < 0;
+            for (k = 0; type == REL_REF_ARRAY && k < v->count; k++)        /* -1: a sphere */
+                gone |= s->pool[v->at + k] >= 0 && new_at[(int)s->pool[v->at + k]] < 0;
         }
         new_at[i] = gone ? -1 : n;
         if (gone) continue;
@@ -38,16 +45,48 @@ static void rel_drop_ops(rel_scene *s, int from, int to) {
             const rel_type type = rel_field_at(op, j)->type;
             rel_set *v = &op->set[j];
             if ((type == REL_REF || type == REL_BODY) && v->v[0] >= 0) v->v[0] = new_at[(int)v->v[0]];
-            for (k = 0; type == REL_REF_ARRAY && k < v->count; k++) s->pool[v->at + k] = new_at[(int)s->pool[v->at + k]];
+            for (k = 0; type == REL_REF_ARRAY && k < v->count; k++)
+                if (s->pool[v->at + k] >= 0) s->pool[v->at + k] = new_at[(int)s->pool[v->at + k]];
         }
         if (n != i) s->op[n] = *op;
         n++;
     }
     s->count = n;
 }
+/* Does a list that ends with -1 contain a call? */
+static int rel_among(const int *calls, int call) {
+    for (; *calls >= 0; calls++) if (*calls == call) return 1;
+    return 0;
+}
+/* Leaves out calls, and all that refers to what they made: those of the list, or all others if `others`. */
+static void rel_leave_calls(rel_scene *s, const int *calls, int others) {
+    int i;
+    for (i = s->count - 1; i > 0; i--) {
+        if (i >= s->count || rel_among(calls, s->op[i].call) == others) continue;
+        s->has[s->op[i].feature] = 0;
+        rel_drop_ops(s, i, i + 1);
+    }
+}
 static void rel_drop_set(rel_op *op, int j) {
     op->count--;
     memmove(op->set + j, op->set + j + 1, (size_t)(op->count - j)*sizeof *op->set);
+}
+/* Sets fields of all ops of a call back to their defaults. The list ends with 0. */
+static void rel_leave_fields(rel_scene *s, int call, const char *const *names) {
+    int i, j;
+    for (; *names; names++)
+        for (i = 0; i < s->count; i++)
+            for (j = s->op[i].count - 1; s->op[i].call == call && j >= 0; j--)
+                if (s->op[i].set[j].field == rel_field_of(call, *names)) rel_drop_set(&s->op[i], j);
+}
+/* Adds a call at the end of a scene. */
+static rel_op *rel_more(rel_scene *s, int call, int step) {
+    rel_op *op = &s->op[s->count++];
+    if (s->count > REL_OPS) exit(3);
+    memset(op, 0, sizeof *op);
+    op->call = call;
+    op->step = step;
+    return op;
 }
 /* How many numbers of a list belong together and can be left out; 0: the list stays. */
 static int rel_group(const rel_op *op, const char *name) {

@@ -82,7 +82,9 @@ static void rel_value(const rel_scene *s, const rel_field *f, const rel_set *v) 
     case REL_INT: rel_say("%d", (int)v->v[0]); break;
     case REL_REF: case REL_BODY: rel_name(s, (int)v->v[0]); break;
     case REL_CODE: rel_say("%s", rel_codes[(int)v->v[0]].name); break;
-    case REL_TEXT: rel_say("\"%s\"", rel_texts[(int)v->v[0]]); break;
+    case REL_TEXT: case REL_PATH: rel_say("\"%s\"", rel_texts[(int)v->v[0]]); break;
+    case REL_DATA: rel_say("&%s", rel_data[(int)v->v[0]].name); break;
+    case REL_WHOLE: rel_say("%llu", (unsigned long long)v->v[0]); break;
     case REL_REAL: case REL_DOUBLE: rel_say("%s", rel_number(v->v[0])); break;
     default:
         rel_say(f->type == REL_VEC ? "V(" : f->type == REL_QUAT ? "dem_quat_make(" : f->type == REL_BOX ? "dem_box_make(" :
@@ -136,13 +138,13 @@ static void rel_desc(const rel_scene *s, const rel_op *op) {
         for (i = 0; i < op->count; i++) {
             const rel_field *f = &c->fields[op->set[i].field];
             if (f->type != REL_REALS) continue;
-            if (!strcmp(f->name, "radii")) rel_say("d.count = %d; ", op->set[i].count);
+            if (!strcmp(f->name, "positions")) rel_say("d.count = %d; ", op->set[i].count/3);
             rel_say("d.%s = ", f->name);
             rel_value(s, f, &op->set[i]);
             rel_say("; ");
         }
     for (i = 0; i < op->count; i++)
-        if (!strncmp(c->fields[op->set[i].field].name, "d.", 2)) rel_assign(s, &c->fields[op->set[i].field], &op->set[i]);
+        if (strchr(c->fields[op->set[i].field].name, '.')) rel_assign(s, &c->fields[op->set[i].field], &op->set[i]);
 }
 /* The text of a call: $name is a value, #name the length of a list. */
 static void rel_text(const rel_scene *s, const rel_op *op) {
@@ -165,10 +167,12 @@ static void rel_text(const rel_scene *s, const rel_op *op) {
                 const char *at = (const char *)c->defaults + c->fields[i].at;
                 int k;
                 if (c->fields[i].type == REL_INT) zero.v[0] = *(const int *)at;
+                if (c->fields[i].type == REL_TEXT) zero.v[0] = rel_text_of(*(const char *const *)(const void *)at);
                 for (k = 0; k < (c->fields[i].type == REL_VEC ? 3 : c->fields[i].type == REL_REAL); k++)
                     zero.v[k] = (double)((const dem_real *)at)[k];
             }
-            rel_value(s, &c->fields[i], v ? v : &zero);
+            if (v || c->fields[i].type != REL_REALS) rel_value(s, &c->fields[i], v ? v : &zero);
+            else rel_say("0");
         }
         p += n;
     }
@@ -205,11 +209,12 @@ static int rel_refers(const rel_scene *s, const rel_op *op, int to) {
     }
     return 0;
 }
+static int rel_named = -1;                     /* a call whose results have variables in any case */
 /* Has what the op makes a variable? */
 static int rel_kept(const rel_scene *s, int at) {
     int i;
     for (i = 0; i < s->count; i++) if (rel_refers(s, &s->op[i], at)) return 1;
-    return s->op[at].call == REL_A_BODY;
+    return s->op[at].call == REL_A_BODY || s->op[at].call == rel_named;
 }
 /* Writes an op as a statement. kept: what it makes has a variable. */
 static void rel_statement(const rel_scene *s, int at, int kept) {
@@ -250,19 +255,32 @@ static const rel_helper rel_helpers[] = {
         "static dem_wall profile(dem_world *w, dem_material m, int n, dem_real *x, int k, int32_t *t, int rule) {",
         "    dem_profile a;", "    a.vertex_count = n; a.vertices = x; a.segment_count = k; a.segments = t;",
         "    return dem_wall_profile_add(w, m, &a, rule);", "}", 0, 0, 0, 0}},
+    {REL_TABLE, 0, {
+        "static void table(dem_world *w, dem_wall wall, dem_motion *d, int n, const dem_real *t, const dem_real *x,",
+        "                  const dem_real *q, const dem_real *load) {", "    dem_motion_row row[8];", "    int k;",
+        "    for (k = 0; k < n; k++, x += 3, q += 4)",
+        "        row[k] = (dem_motion_row){t[k], {x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}, load[k]};",
+        "    d->table = row; d->table_count = n;", "    dem_wall_motion_set(w, wall, d);", "}"}},
     {REL_FIX, 0, {
         "static void fix(dem_world *w, dem_body b, int fixed) {", "    dem_selection s = DEM_SELECTION;",
         "    s.count = 1; s.bodies = &b;", "    dem_bodies_fixed_set(w, &s, fixed);", "}", 0, 0, 0, 0}},
+    {REL_MEMBER, 0, {
+        "static void group(dem_world *w, dem_body b, const char *name, int member) {", "    dem_selection s = DEM_SELECTION;",
+        "    s.count = 1; s.bodies = &b;", "    dem_bodies_group_set(w, &s, dem_group_get(w, name), member);", "}", 0, 0, 0, 0}},
+    {REL_REMOVE_SOME, 0, {
+        "static void remove_some(dem_world *w, dem_body b) {", "    dem_selection s = DEM_SELECTION;",
+        "    s.count = 1; s.bodies = &b;", "    dem_bodies_remove(w, &s);", "}", 0, 0, 0, 0}},
     {REL_KICK, 0, {
         "static void kick(dem_world *w, dem_body b, dem_vec3 v, dem_vec3 spin) {", "    dem_selection s = DEM_SELECTION;",
         "    s.count = 1; s.bodies = &b;", "    dem_bodies_velocity_set(w, &s, v, spin);", "}", 0, 0, 0, 0}}
 };
 static void rel_print_helpers(FILE *out, const rel_scene *s) {
-    int i, k, h;
+    int i, k, h, call;
     for (h = 0; h < (int)(sizeof rel_helpers/sizeof *rel_helpers); h++) {
         for (i = 0; i < s->count; i++)
-            if (s->op[i].call == rel_helpers[h].call && (rel_given(&s->op[i], "shape", 5) != 0) == rel_helpers[h].shaped &&
-                (s->op[i].call != REL_A_BODY || rel_moves(&s->op[i]))) break;
+            if ((call = s->op[i].call == REL_MESH_FILE ? REL_MESH : s->op[i].call == REL_PROFILE_FILE ? REL_PROFILE :
+                        s->op[i].call) == rel_helpers[h].call && (rel_given(&s->op[i], "shape", 5) != 0) == rel_helpers[h].shaped &&
+                (call != REL_A_BODY || rel_moves(&s->op[i]))) break;
         for (k = 0; k < 9 && i < s->count && rel_helpers[h].lines[k]; k++) fprintf(out, "%s\n", rel_helpers[h].lines[k]);
     }
 }

@@ -4,26 +4,39 @@
 #define REL_RUN_H
 #include "calls.h"
 
+int rel_domain_bodies = 2048;                  /* groups.h */
+
 /* What a scene is at some step: the bodies in the order in which the scene adds them, absent ones all 0; the force on
    each wall; sums. */
-enum { REL_MARKS = 6 };
-typedef struct rel_mark { int step, bodies, left; double *x, momentum[3], speed; uint64_t hash; } rel_mark;
+/* noted: what events, functions of outputs and readers have seen (codes_services.h). */
+enum { REL_MARKS = 6, REL_MARKS_MOST = 11 };
+typedef struct rel_mark {
+    int step, bodies, left;
+    double *x, speed;
+    uint64_t hash, unsolved, noted;
+    dem_totals totals;
+    double most[2];                            /* sums of the sizes of m v and of what adds up to the angular momentum */
+    double impulse[3];                         /* N s, of grains on all walls */
+    dem_ledger ledger;
+} rel_mark;
 enum { REL_PER_BODY = 13 };                    /* position, velocity, spin, orientation */
 typedef struct rel_how {
     int threads;                               /* 0: as the scene has it */
     int pieces;                                /* calls of dem_world_step per mark; 0: one */
-    int checkpoint;                            /* 1: written and read at each mark, into a new world; 2: into a used one */
-    int slabs;                                 /* 0: none */
+    int checkpoint;                            /* written and read at each mark, 1: into a new world; 2: a used one */
+    int slabs;                                 /* 0: none; -1, -2: see rel_slabs_beside */
     int ledger;                                /* 1: the ledger is on */
     int marks;                                 /* 0: REL_MARKS */
     int64_t refuse;                            /* the allocation that is refused; 0: none */
+    int way;                                   /* 1: dem_world_run, 2: dem_world_run_to, 3: dem_world_settle */
+    int axis, moved;                           /* of slabs; 1: their borders move at every chance */
 } rel_how;
 struct rel_run {
     dem_world *w;
     dem_slabs *slabs;
     const rel_scene *s;
     union { int32_t id; dem_body body; } made[REL_OPS];
-    rel_mark mark[REL_MARKS + 1];
+    rel_mark mark[REL_MARKS_MOST + 1];
     int marks;
     int refused;                               /* 1 + the op that was refused; 0: none */
     int repeated;                              /* the op that was repeated after a refused allocation; 0: none */
@@ -33,7 +46,15 @@ struct rel_run {
     dem_ledger ledger;
     dem_body_counts counts;
     uint64_t hash;
+    int filed;                                 /* 1: the files were read and removed */
+    uint64_t file[REL_OPS];                    /* of the bytes of the file that an op wrote */
+    long took[REL_OPS];                        /* bytes that an op wrote, contacts that were recorded, or 1 */
 };
+static const char *rel_path(const rel_run *r, int text) {
+    static char path[120];
+    snprintf(path, sizeof path, "build/tmp/relations_%llx_%s", (unsigned long long)r->s->seed, rel_texts[text]);
+    return path;
+}
 
 /* Fills the arguments of an op. Lists are written to `pool`. */
 static void rel_arguments(rel_run *r, const rel_op *op, char *a, dem_real *pool, int32_t *ints) {
@@ -80,10 +101,14 @@ static void rel_arguments(rel_run *r, const rel_op *op, char *a, dem_real *pool,
                 ((int32_t *)to)[k] = at < 0 ? 0 : r->made[at].id;
             }
             break;
-        case REL_REAL_ARRAY: for (k = 0; k < v->count; k++) ((dem_real *)to)[k] = (dem_real)r->s->pool[v->at + k]; break;
+        case REL_REAL_ARRAY: for (k = 0; k < v->count; k++) ((dem_real *)to)[k] = (dem_real)r->s->pool[v->at + k];
+            break;
         case REL_DOUBLE_ARRAY: for (k = 0; k < v->count; k++) ((double *)to)[k] = r->s->pool[v->at + k]; break;
         case REL_CODE: memcpy(to, &rel_codes[(int)v->v[0]].function, sizeof(void (*)(void))); break;
         case REL_TEXT: *(const char **)to = rel_texts[(int)v->v[0]]; break;
+        case REL_PATH: *(const char **)to = rel_path(r, (int)v->v[0]); break;
+        case REL_DATA: *(void **)to = rel_data[(int)v->v[0]].at; break;
+        case REL_WHOLE: *(uint64_t *)to = (uint64_t)v->v[0]; break;
         }
     }
 }
@@ -101,6 +126,7 @@ static dem_world *rel_world(rel_run *r, const rel_how *how) {
     rel_a_world a;
     dem_world *w;
     rel_arguments(r, &r->s->op[0], (char *)&a, 0, 0);
+    rel_domain_bodies = a.domain_bodies ? a.domain_bodies : 2048;
     if (how->threads) a.d.threads = how->threads;
     if (how->ledger) a.d.ledger = 1;
     if (how->refuse) {
@@ -124,10 +150,18 @@ static int rel_calls_at(rel_run *r, int from, int step) {
     int i;
     for (i = from; i < r->s->count; i++) {
         const rel_op *op = &r->s->op[i];
+        const uint64_t before = noted;
+        const int64_t allocations = rel_allocations.count;
         int32_t made;
         if (op->step != step) continue;
         rel_arguments(r, op, a.bytes, pool, ints);
         made = rel_calls[op->call].call(r->w, a.bytes);
+        r->took[i] = 1;
+        if (op->call == REL_READ && allocations < rel_allocations.refuse &&
+            rel_allocations.count >= rel_allocations.refuse) {
+            noted = before;                    /* again */
+            made = 0;
+        }
         if (!made && rel_allocations.refuse && rel_allocations.count >= rel_allocations.refuse) {
             rel_allocations.refuse = 0;        /* it succeeds now */
             rel_arguments(r, op, a.bytes, pool, ints);
@@ -148,16 +182,24 @@ static int rel_calls_at(rel_run *r, int from, int step) {
 static int rel_build(rel_run *r, const rel_scene *s, const rel_how *how) {
     memset(r, 0, sizeof *r);
     r->s = s;
+    rel_close_replays();
+    noted = 0;
+    snprintf(scratch, sizeof scratch, "build/tmp/relations_%llx.out", (unsigned long long)s->seed);
+    unit_m = s->unit[0] > 0 ? s->unit[0] : 1;
+    unit_s = s->unit[1] > 0 ? s->unit[1] : 1;
     r->w = rel_world(r, how);
     if (!r->w) { r->refused = 1; return 0; }
     return rel_calls_at(r, 1, 0);
 }
-static int rel_bodies(const rel_scene *s) {
+static int rel_count(const rel_scene *s, int call) {
     int i, n = 0;
-    for (i = 0; i < s->count; i++) n += s->op[i].call == REL_A_BODY;
+    for (i = 0; i < s->count; i++) n += s->op[i].call == call;
     return n;
 }
-static int rel_is_wall(int call) { return call >= REL_PLANE && call <= REL_SIEVE; }
+static int rel_bodies(const rel_scene *s) { return rel_count(s, REL_A_BODY); }
+static int rel_is_wall(int call) {
+    return (call >= REL_PLANE && call <= REL_SIEVE) || call == REL_MESH_FILE || call == REL_PROFILE_FILE;
+}
 static int rel_walls(const rel_scene *s) {
     int i, n = 0;
     for (i = 0; i < s->count; i++) n += rel_is_wall(s->op[i].call);
@@ -174,10 +216,14 @@ static void rel_put_mark(rel_run *r, int step) {
     m->x = x;
     m->left = (int)dem_body_counts_get(r->w).left;
     m->hash = dem_world_hash_get(r->w);
+    m->noted = noted;
     r->contacts = c.contacts > r->contacts ? c.contacts : r->contacts;
     r->wall_contacts = c.wall_contacts > r->wall_contacts ? c.wall_contacts : r->wall_contacts;
-    for (k = 0; k < 3; k++) m->momentum[k] = 0;
-    m->speed = 0;
+    m->unsolved = c.unsolved;
+    m->totals = dem_totals_get(r->w);
+    m->ledger = dem_ledger_get(r->w);
+    m->speed = m->most[0] = m->most[1] = 0;
+    for (k = 0; k < 3; k++) m->impulse[k] = 0;
     if (!x) return;
     for (i = 0; i < r->s->count; i++) {
         dem_body_state b;
@@ -187,9 +233,13 @@ static void rel_put_mark(rel_run *r, int step) {
                 (double)b.velocity.x, (double)b.velocity.y, (double)b.velocity.z, (double)b.spin.x, (double)b.spin.y,
                 (double)b.spin.z, (double)b.orientation.w, (double)b.orientation.x, (double)b.orientation.y,
                 (double)b.orientation.z};
+            const double v = sqrt(all[3]*all[3] + all[4]*all[4] + all[5]*all[5]);
+            const double inertia = fmax((double)b.inertia, fmax((double)b.moments.x, fmax((double)b.moments.y, (double)b.moments.z)));
             for (k = 0; k < REL_PER_BODY; k++) x[k] = all[k];
-            for (k = 0; k < 3; k++) m->momentum[k] += (double)b.mass*all[3 + k];
-            m->speed = fmax(m->speed, sqrt(all[3]*all[3] + all[4]*all[4] + all[5]*all[5]));
+            m->most[0] += (double)b.mass*v;
+            m->most[1] += (double)b.mass*v*sqrt(all[0]*all[0] + all[1]*all[1] + all[2]*all[2]) +
+                          inertia*sqrt(all[6]*all[6] + all[7]*all[7] + all[8]*all[8]);
+            m->speed = fmax(m->speed, v);
         }
         x += REL_PER_BODY;
     }
@@ -200,18 +250,47 @@ static void rel_put_mark(rel_run *r, int step) {
         wall.id = r->made[i].id;
         if (wall.id && dem_wall_loads_get(r->w, wall, &loads) == DEM_OK) {
             x[0] = (double)loads.force.x; x[1] = (double)loads.force.y; x[2] = (double)loads.force.z;
+            for (k = 0; k < 3; k++) m->impulse[k] += loads.impulse[k];
         }
         x += 3;
     }
 }
-/* Writes a checkpoint and continues from it: in a new world (how 1) or in one that has run (2). */
+/* Reads and removes the files that the scene has written, and asks for what was recorded. */
+static void rel_files(rel_run *r) {
+    const uint64_t before = noted;
+    int i, j;
+    if (r->filed || !r->s) return;
+    r->filed = 1;
+    rel_close_replays();
+    for (i = 0; i < r->s->count; i++) {
+        const rel_op *op = &r->s->op[i];
+        if (op->call == REL_EVENTS && r->w) {
+            const dem_material any = {0};
+            dem_impacts *n = (dem_impacts *)calloc(1, sizeof *n);
+            if (n && dem_impacts_get(r->w, any, any, n) == DEM_OK) r->took[i] = (long)n->ended + n->open;
+            free(n);
+        }
+        for (j = 0; j < op->count; j++)
+            if (rel_calls[op->call].fields[op->set[j].field].type == REL_PATH) {
+                noted = 0;
+                r->took[i] = fold(rel_path(r, (int)op->set[j].v[0]));
+                r->file[i] = noted;
+            }
+    }
+    noted = before;
+}
+/* Writes a checkpoint and continues from it: in a new world (how 1) or in one that has run (2). What was noted after
+   the checkpoint was written counts no more. */
 static int rel_checkpoint(rel_run *r, const rel_how *how, int step) {
+    const uint64_t before = noted;
     char path[64];
     dem_world *w = 0;
     int ok;
+    rel_close_replays();
     snprintf(path, sizeof path, "build/tmp/relations_%llx.dem", (unsigned long long)r->s->seed);
     ok = dem_checkpoint_write(r->w, path) == DEM_OK;
     if (!ok) rel_tell(r, dem_world_error_get(r->w));
+    else if (!twice(r->w, path)) { rel_tell(r, "a checkpoint that is written twice is another file"); ok = 0; }
     if (ok && how->checkpoint == 2) {
         w = r->w;
         ok = dem_world_step(w, 3) == DEM_OK;   /* what the file replaces */
@@ -227,14 +306,44 @@ static int rel_checkpoint(rel_run *r, const rel_how *how, int step) {
         dem_world_destroy(old);
         w = r->w;
     }
-    if (ok && dem_checkpoint_read(w, path) != DEM_OK) { rel_tell(r, dem_world_error_get(w)); ok = 0; }
+    if (ok && (how->checkpoint == 2 ? dem_checkpoint_read_changed(w, path, "") : dem_checkpoint_read(w,
+        path)) != DEM_OK) { rel_tell(r, dem_world_error_get(w)); ok = 0; }
     remove(path);
+    noted = before;
     return ok;
+}
+/* Reads slabs. The sums of loads that this sets to 0 are not compared. */
+static void rel_read_slabs(dem_slabs *slabs) {
+    dem_slab one;
+    int k;
+    for (k = 0; dem_slab_get(slabs, k, &one) == DEM_OK; k++) note(one.lo);
+    note((double)dem_slabs_counters_get(slabs).steps);
+    dem_slabs_loads_reset(slabs);
+}
+/* Steps by another function. dem_world_settle ends earlier if all is at rest. */
+static int rel_step_by(rel_run *r, int way, int steps) {
+    const uint64_t end = dem_world_steps_get(r->w) + (uint64_t)steps;
+    const double seconds = steps*(double)dem_world_desc_get(r->w).dt;
+    const dem_result result = way == 1 ? dem_world_run(r->w, seconds, 0, 0) :
+        way == 2 ? dem_world_run_to(r->w, dem_world_time_get(r->w) + seconds, 0, 0) :
+        dem_world_settle(r->w, seconds, (dem_real)1e-12, 0, 0);
+    if (way == 3 && (result == DEM_OK || result == DEM_ERROR_STOPPED) && dem_world_steps_get(r->w) < end)
+        return dem_world_step(r->w, (int)(end - dem_world_steps_get(r->w))) == DEM_OK;
+    if (result != DEM_OK && !(way == 3 && result == DEM_ERROR_STOPPED)) { rel_tell(r, dem_world_error_get(r->w));
+        return 0; }
+    if (dem_world_steps_get(r->w) == end) return 1;
+    snprintf(r->message, sizeof r->message, "%g s were %d steps, not %d", seconds,
+             (int)(dem_world_steps_get(r->w) + (uint64_t)steps - end), steps);
+    return 0;
 }
 static int rel_step(rel_run *r, const rel_how *how, int steps) {
     int i;
+    if (how->way) return rel_step_by(r, how->way, steps);
     if (r->slabs) {
-        if (dem_slabs_step(r->slabs, steps) == DEM_OK && dem_slabs_collect(r->slabs, r->w) == DEM_OK) return 1;
+        if (dem_slabs_step(r->slabs, steps) == DEM_OK && dem_slabs_collect(r->slabs, r->w) == DEM_OK) {
+            rel_read_slabs(r->slabs);
+            return 1;
+        }
         rel_tell(r, dem_slabs_error_get(r->slabs));
         return 0;
     }
@@ -249,10 +358,35 @@ static int rel_step(rel_run *r, const rel_how *how, int steps) {
     }
     return 1;
 }
+/* Friction of all pairs is changed and changed back. With `make`, slabs are made of the world, stepped and destroyed in
+   between. */
+CODE(touch, static void touch(dem_world *w, int materials, int make) {
+    dem_slabs_desc d = DEM_SLABS_DESC;
+    dem_slabs *s = 0;
+    dem_pair pair[9];
+    int i, k;
+    for (k = 0; k < 2; k++) {
+        for (i = 0; i < materials*materials; i++) {
+            const dem_material a = {1 + i/materials}, b = {1 + i%materials};
+            dem_pair p;
+            if (!k) dem_pair_get(w, a, b, &pair[i]);
+            p = pair[i];
+            if (!k) p.friction = p.rolling_friction = p.spinning_friction = 0;
+            dem_pair_set(w, a, b, &p);
+        }
+        d.count = 2;
+        if (!k && make) s = dem_slabs_create(w, &d);
+    }
+    if (s) dem_slabs_step(s, 1);
+    dem_slabs_destroy(s);
+    dem_world_error_get(w);
+})
 static int rel_slabs_begin(rel_run *r, const rel_how *how) {
     dem_slabs_desc d = DEM_SLABS_DESC;
-    if (!how->slabs || r->slabs) return 1;
+    if (how->slabs <= 0 || r->slabs) return 1;
     d.count = how->slabs;
+    d.axis = how->axis;
+    if (how->moved) { d.balance = 1; d.balance_interval = 1; }
     r->slabs = dem_slabs_create(r->w, &d);
     if (r->slabs) return 1;
     rel_tell(r, dem_world_error_get(r->w));
@@ -272,8 +406,7 @@ static int rel_change(rel_run *r, const rel_how *how, int step) {
     }
     return rel_calls_at(r, 1, step) && rel_slabs_begin(r, how);
 }
-/* Runs a scene to its end. Returns 1 unless a call was refused or a step failed; the marks up to there are valid. */
-static int rel_go(rel_run *r, const rel_scene *s, const rel_how *how) {
+static int rel_go_on(rel_run *r, const rel_scene *s, const rel_how *how) {
     const int marks = s->marks ? s->marks : REL_MARKS;
     int step = 0, next, i, k, mark;
     if (!rel_build(r, s, how)) return 0;
@@ -288,6 +421,7 @@ static int rel_go(rel_run *r, const rel_scene *s, const rel_how *how) {
             if (step < mark && !rel_change(r, how, step)) return 0;
         }
         rel_put_mark(r, step);
+        if (how->slabs < 0 && k < marks) touch(r->w, rel_count(s, REL_MATERIAL), how->slabs == -2);
         if (how->checkpoint && k < marks && !rel_checkpoint(r, how, step)) { r->failed = 2; return 0; }
         if (k < marks && !rel_change(r, how, step)) return 0;
     }
@@ -296,8 +430,15 @@ static int rel_go(rel_run *r, const rel_scene *s, const rel_how *how) {
     r->counts = dem_body_counts_get(r->w);
     return 1;
 }
+/* Runs a scene to its end. Returns 1 unless a call was refused or a step failed; the marks up to there are valid. */
+static int rel_go(rel_run *r, const rel_scene *s, const rel_how *how) {
+    const int ran = rel_go_on(r, s, how);
+    rel_files(r);
+    return ran;
+}
 static void rel_end(rel_run *r) {
     int k;
+    rel_files(r);
     for (k = 0; k < r->marks; k++) free(r->mark[k].x);
     if (r->slabs) dem_slabs_destroy(r->slabs);
     dem_world_destroy(r->w);

@@ -15,17 +15,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { REL_SETS = 32, REL_OPS = 320, REL_POOL = 12000, REL_FEATURES = 160 };
+enum { REL_SETS = 32, REL_OPS = 320, REL_POOL = 12000, REL_FEATURES = 320 };
 
 /* The type of a value in the arguments of a call. LIST types are rel_reals and rel_ints, whose numbers are in the
-   scene's pool; ARRAY types are arrays inside a desc. */
+   scene's pool; ARRAY types are arrays inside a desc. PATH: the name of a file, which run.h completes. */
 typedef enum rel_type {
     REL_INT, REL_INT3, REL_REAL, REL_DOUBLE, REL_VEC, REL_QUAT, REL_BOX, REL_REF, REL_BODY, REL_REALS, REL_INTS,
-    REL_REF_ARRAY, REL_REAL_ARRAY, REL_DOUBLE_ARRAY, REL_CODE, REL_TEXT
+    REL_REF_ARRAY, REL_REAL_ARRAY, REL_DOUBLE_ARRAY, REL_CODE, REL_TEXT, REL_PATH, REL_DATA, REL_WHOLE
 } rel_type;
-/* How a value changes with the axes. BODY: in the frame of a body, changed by mirrors only. */
+/* How a value changes with the axes. IN_BODY: in the frame of a body, changed by mirrors only. TURN: quaternions of
+   rotations from a pose. */
 typedef enum rel_nature {
-    REL_SCALAR, REL_POINT, REL_VECTOR, REL_AXIAL, REL_ORIENTATION, REL_IN_BODY, REL_PER_AXIS, REL_FIXED
+    REL_SCALAR, REL_POINT, REL_VECTOR, REL_AXIAL, REL_ORIENTATION, REL_IN_BODY, REL_PER_AXIS, REL_FIXED,
+    REL_TURN, REL_TURN_IN_BODY,
+    REL_POINT_2, REL_IN_BODY_2, REL_AXES                 /* in the x-y plane; sums of bits of axes */
 } rel_nature;
 typedef struct rel_field {
     const char *name;
@@ -45,6 +48,7 @@ typedef struct rel_scene {
     uint64_t seed;
     int steps, marks;                          /* marks: how often runs are compared; 0: REL_MARKS times */
     int count, pool_count;
+    double unit[2];                            /* length and time of the units of codes.h; 0: m and s */
     unsigned char has[REL_FEATURES];           /* rows of draw.h that it contains */
     double pool[REL_POOL];
     rel_op op[REL_OPS];

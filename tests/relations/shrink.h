@@ -3,6 +3,7 @@
 #ifndef REL_SHRINK_H
 #define REL_SHRINK_H
 #include "edit.h"
+#include "relate_all.h"
 #include <time.h>
 
 typedef int (*rel_predicate)(const rel_scene *s, void *user);

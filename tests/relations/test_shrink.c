@@ -12,8 +12,10 @@ static int calls_of(const rel_scene *s, int call) {
 static int has_three(const rel_scene *s, void *user) {
     const rel_set *g = rel_given(&s->op[0], "d.gravity", 9);
     int i, used = 0;
-    for (i = 0; i < s->count; i++)
-        if (s->op[i].call == REL_A_BODY && rel_given(&s->op[i], "shape", 5)) used = 1;
+    for (i = 0; i < s->count; i++) {
+        const rel_set *shape = s->op[i].call == REL_A_BODY ? rel_given(&s->op[i], "shape", 5) : 0;
+        if (shape && s->op[(int)shape->v[0]].call == REL_ELLIPSOID) used = 1;
+    }
     ++*(int *)user;
     return used && calls_of(s, REL_ELLIPSOID) && calls_of(s, REL_MESH) && g && g->v[2] < -1 && s->steps >= 40;
 }
@@ -82,6 +84,18 @@ int main(int argc, char **argv) {
         rel_drop_ops(&scene, before.count - 1, before.count);
         CHECK_EQ(scene.count, before.count - 1);
     }
+    TEST("each row is drawn in 3000 scenes, with what it needs and without what it excludes") {
+        static int drawn[REL_ROWS];
+        int seed, i, k, bad = 0;
+        for (seed = 1; seed <= 3000; seed++) {
+            if (!rel_draw_scene(&scene, (uint64_t)seed)) continue;
+            for (i = 0; i < REL_ROWS; i++)
+                for (drawn[i] += scene.has[i], k = 0; k < REL_ROWS && scene.has[i]; k++)
+                    bad += (scene.has[k] && rel_excludes[i][k]) || (!scene.has[k] && rel_needs[i][k]);
+        }
+        CHECK_EQ(bad, 0);
+        for (i = 0; i < REL_ROWS; i++) if (!(drawn[i] > 20)) CHECK_STR(rel_features[i].name, "drawn");
+    }
     TEST("the work of a search for a smaller scene is limited") {
         int evaluations = 0;
         CHECK(draw_until(&scene, has_three, 30, 1));
@@ -108,7 +122,7 @@ int main(int argc, char **argv) {
         for (relation = 0; relation < REL_RELATIONS; relation++) {
             const int lines = lines_of(&scene, relation, &open);
             CHECK(lines > 20);
-            CHECK(lines < 60);
+            if (lines >= 60) CHECK_STR(rel_relations[relation].name, "shorter");
             CHECK_EQ(open, 0);
         }
     }
