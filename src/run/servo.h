@@ -60,7 +60,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
     out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
     for (d = 0; d < w->domain_count; d++) {
         const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
-        for (; c < end && w->domains[d].kept_walls; c++) {
+        for (; c < end && w->domains[d].walls; c++) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;

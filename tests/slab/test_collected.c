@@ -220,6 +220,25 @@ int main(int argc, char **argv) {
             CHECK_EQ(dem_counters_get(world[2]).wall_contacts, 3);
             for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
         }
+    TEST("a servo wall that presses a grain knows its contact in the first step of slabs, as in one world") {
+        dem_body grain;
+        dem_wall floor;
+        dem_servo s[2];
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_motion m = DEM_MOTION;
+            dem_world *world = slipping(0, 0.999e-3, &grain, &floor);
+            m.kind = DEM_MOTION_SERVO;
+            m.velocity = at(0, 0, 0.5);
+            m.load = DEM_R(0.2);
+            CHECK_EQ(dem_wall_motion_set(world, floor, &m), DEM_OK);
+            go(world, 0, 20);
+            go(world, k, 1);
+            CHECK_EQ(dem_wall_servo_get(world, floor, &s[k]), DEM_OK);
+            dem_world_destroy(world);
+        }
+        CHECK(s[0].stiffness > 0);
+        CHECK(s[1].stiffness == s[0].stiffness && s[1].speed == s[0].speed);
     }
     return test_end();
 }

@@ -192,6 +192,24 @@ int main(int argc, char **argv) {
         }
         CHECK_EQ(n, (fine ? 7 : 6)*15);
     }
+    TEST("a servo wall that pulls at a grain across a gap, which its law holds, reaches its load") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        const dem_material_desc stuff = scene_stuff(1e7, 0.8, 0.3, 0);
+        dem_motion motion = press(0.02, -0.1);
+        dem_material m;
+        dem_world *world;
+        dem_wall wall;
+        desc.law = own_law;
+        desc.law_stiffness = 10000;
+        desc.law_range = DEM_R(1e-3);
+        world = stage(&desc, &stuff, &m);
+        any_grain(world, m, BALL);
+        wall = lid(world, m, 2*R + 1e-5, &motion);
+        CHECK_EQ(dem_world_run(world, 0.2, 0, 0), DEM_OK);
+        CHECK_REL(servo_of(world, wall).force, -0.1, fine ? 0.01 : 0.05);
+        CHECK(servo_of(world, wall).stiffness > 0);
+        dem_world_destroy(world);
+    }
     TEST("an oedometer follows a table of stresses within 1 % in loading and unloading, of planes and periodic") {
         int periodic;
         for (periodic = 0; periodic < 2; periodic++) {
