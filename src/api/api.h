@@ -591,6 +591,7 @@ DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_conta
    Energy: the contact stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed
    exactly along both lines. Motion along the slope kun loses nothing, so that a grain at rest
    oscillates there unless the pair has normal_damping (cn).
+   kun must be > 0. Without DEM_NORMAL_HYSTERETIC a user-defined law sets it in a copy of *c.
    Contact history: 1 real, D [m]. Tests: tests/law/test_hysteresis.c. */
 DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real kn = c->kn, kun = c->kun, kad = c->kad, soft = kun - kn, before = memory[0];

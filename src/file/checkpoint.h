@@ -18,7 +18,7 @@
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 25 };
+enum { DEMI_CHECKPOINT_VERSION = 26 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -303,6 +303,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
         demi_visit(s, &wall->ahead, sizeof wall->ahead);
+        demi_visit(s, &wall->was, sizeof wall->was);
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
         demi_visit(s, &wall->servo, sizeof wall->servo);

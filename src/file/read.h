@@ -700,7 +700,7 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
         result = DEM_ERROR_ARGUMENT;
     dem_mesh_free(w, &mesh);
     if (result != DEM_OK) return result;
-    wall->pose = wall->ahead = wall->first = wall->home;
+    wall->pose = wall->ahead = wall->was = wall->first = wall->home;
     return demi_motion_lay(w, id, &part->motion, wall, wall);
 }
 /* All checks come before the first wall is added, so that an error leaves the world as it was. If

@@ -351,7 +351,7 @@ static demi_impacts *demi_impacts_of(dem_world *w, int a, int b) {
 /* Returns the bin of an energy, J: five per decade from 1e-18 J on. */
 static int demi_impact_bin(double energy) {
     const double at = energy > 0 ? 5*(demi_log(energy)*0.43429448190325183 + 18) : 0;
-    return at > 0 ? DEMI_MIN((int)at, DEM_IMPACT_BINS - 1) : 0;
+    return at > 0 ? (int)DEMI_MIN(at, DEM_IMPACT_BINS - 1) : 0;
 }
 /* Adds a contact that has ended to the statistics. Returns 0 if memory ran out. */
 static int demi_impacts_add(dem_world *w, const dem_event *e) {

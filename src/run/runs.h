@@ -16,26 +16,27 @@ static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn 
     return stop ? demi_fail(w, DEM_ERROR_STOPPED, "%s: stopped by the progress function at %g s",
                             call, w->clock.time) : DEM_OK;
 }
-DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
-                                 void *user) {
-    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+/* Returns the time from which a run counts: where the last one should have ended, so that runs add
+   up, or now if other steps were taken since. */
+static double demi_run_from(const dem_world *w) {
+    const demi_timing *c = &w->clock;
+    return c->run_steps == c->steps && fabs(c->run_end - c->time) <= (double)c->dt ? c->run_end
+                                                                                   : c->time;
+}
+/* Advances the world to the step nearest to `end`, s. Decides for all runs how many steps a time
+   is. */
+static dem_result demi_run_until(dem_world *w, const char *call, double end,
+                                 dem_progress_fn progress, void *user) {
     const double start = w->clock.time, begun = demi_clock();
     const uint64_t first = w->clock.steps;
-    double last = begun, end;
+    double last = begun;
     int chunk = 1;
-    if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
-        return demi_refuse(w, __func__, "seconds is %g, must be finite and >= 0", seconds);
-    if (demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_unbuilt(w, call) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (progress) w->look.tenths_told = 0;      /* dem_world_settle reports for several runs */
     if (w->stage.moved) {                       /* it ran out of memory; its time has passed */
         const dem_result rest = dem_world_step(w, 1);
         if (rest != DEM_OK) return rest;
     }
-    end = start + seconds;
-    /* it continues the last run: from the end that was requested there, so that runs add up */
-    if (w->clock.run_steps == w->clock.steps &&
-        fabs(w->clock.run_end - start) <= (double)w->clock.dt)
-        end = w->clock.run_end + seconds;
     for (;;) {
         const double left = end - w->clock.time;
         double now;
@@ -50,8 +51,8 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         now = demi_clock();
         if (now - last > 0.1) {
             last = now;
-            result = demi_progress(w, __func__, progress, user,
-                                   (w->clock.time - start)/seconds, begun);
+            result = demi_progress(w, call, progress, user,
+                                   (w->clock.time - start)/(end - start), begun);
             if (result != DEM_OK) return result;
         }
         /* short steps: read the clock less often */
@@ -59,7 +60,14 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
     }
     w->clock.run_end = end;
     w->clock.run_steps = w->clock.steps;
-    return demi_progress(w, __func__, progress, user, 1, begun);
+    return demi_progress(w, call, progress, user, 1, begun);
+}
+DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
+                                 void *user) {
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
+        return demi_refuse(w, __func__, "seconds is %g, must be finite and >= 0", seconds);
+    return demi_run_until(w, __func__, demi_run_from(w) + seconds, progress, user);
 }
 
 DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn progress,
@@ -68,8 +76,7 @@ DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn p
     if (!demi_finite_double(time) || time < w->clock.time - (double)w->clock.dt/2)
         return demi_refuse(w, __func__, "time is %g s, must be finite and not before now "
                            "(%g s); to go back in time, read a checkpoint", time, w->clock.time);
-    w->clock.run_steps = w->clock.steps + 1;        /* it does not continue the last run */
-    return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
+    return demi_run_until(w, __func__, time, progress, user);
 }
 
 /* Returns the largest speed, m/s, of the bodies that can move. *mean receives the root of the mean
@@ -129,6 +136,7 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
                                     dem_progress_fn progress, void *user) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const double begun = demi_clock(), start = w->clock.time;
+    const double end = demi_run_from(w) + seconds;
     double look, below = demi_calm(w, (double)speed, &look), last = begun;
     int i, calm = 0;
     if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
@@ -145,15 +153,14 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
     }
     w->look.tenths_told = 0;
     while (w->bodies.count || demi_feed_coming(w) >= 0) {
-        const double left = start + seconds - w->clock.time;
         double mean, most = demi_speeds(w, &mean);
         dem_result result;
         below = demi_calm(w, (double)speed, &look);
         calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
         if (calm > 2) break;
-        if (!(left > (double)w->clock.dt/2)) return demi_unsettled(w, seconds, below);
+        if (end - w->clock.time < (double)w->clock.dt/2) return demi_unsettled(w, seconds, below);
         look = DEMI_MAX(DEMI_MIN(look, seconds/4), (double)w->clock.dt);
-        result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
+        result = demi_run_until(w, __func__, DEMI_MIN(demi_run_from(w) + look, end), 0, 0);
         if (result != DEM_OK) return result;
         if (demi_clock() - last > 0.1) {
             last = demi_clock();

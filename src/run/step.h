@@ -865,8 +865,11 @@ static dem_result demi_step_ready(dem_world *h) {
    the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     /* not in the middle of a step: what is due there is written when the step is complete */
-    dem_result result = steps && !h->stage.moved ? demi_look(h) : DEM_OK;
+    const int looks = steps && !h->stage.moved;
+    /* due is what is nearest to this step, by dt */
+    dem_result result = looks && h->look.outputs_look ? demi_dt_settle(h) : DEM_OK;
     int i;
+    if (looks && result == DEM_OK) result = demi_look(h);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
         demi_crew_begin(h);

@@ -343,7 +343,7 @@ static void demi_wall_leave(dem_world *w, dem_wall wall) {
 }
 /* Adds a wall at rest in its first pose. */
 static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
-    wall->pose = wall->mid = wall->ahead = wall->first = wall->home;
+    wall->pose = wall->mid = wall->ahead = wall->was = wall->first = wall->home;
     return demi_wall_enter(w, call, wall);
 }
 

@@ -643,6 +643,18 @@ static int walk_again(dem_world *world, char *why) {
     return 1;
 }
 
+static dem_real larger(const dem_body_state *body, dem_body id, double time, void *user) {
+    (void)id;
+    (void)time;
+    (void)user;
+    return DEM_R(0.3)*body->radius;
+}
+/* Hertz's law, which tells impossible energies. */
+static void endless_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    dem_law_hertz(c, memory, f);
+    f->energy.dashpot = (dem_real)HUGE_VAL;
+    f->energy.elastic = f->energy.dashpot - f->energy.dashpot;
+}
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -1243,6 +1255,71 @@ int main(int argc, char **argv) {
             }
             for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
         }
+        remove(path);
+    }
+    TEST("a checkpoint is read when a law has told the ledger and contact events energies that are not finite") {
+        dem_world *w[2];
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_events_desc record = DEM_EVENTS_DESC;
+            dem_material glass;
+            dem_wall ground;
+            desc.law = endless_law;
+            desc.dt = DEM_R(1e-5);
+            desc.ledger = 1;
+            desc.gravity = at(0, 0, -9.81);
+            w[k] = dem_world_create(&desc);
+            glass = scene_material(w[k], 1e7, 0.5, 0.3, 0);
+            ground = scene_floor(w[k], glass, -0.1, -0.1, 0.1, 0.1, 1, 1);
+            CHECK(ground.id > 0);
+            dem_sphere_add(w[k], glass, DEM_R(0.005), at(0, 0, 0.00499));
+            scene_move(w[k], dem_sphere_add(w[k], glass, DEM_R(0.005), at(0.05, 0, 0.00499)), at(0, 0, 1),
+                       at(0, 0, 0));           /* its contact ends */
+            CHECK_EQ(dem_events_record(w[k], &record), DEM_OK);
+        }
+        CHECK_EQ(scene_step(w[0], 100), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(w[0], path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(w[1], path), DEM_OK);
+        if (test_now.wrong) puts(dem_world_error_get(w[1]));
+        for (k = 0; k < 2; k++) CHECK_EQ(scene_step(w[k], 50), DEM_OK);
+        CHECK_EQ(dem_world_hash_get(w[1]), dem_world_hash_get(w[0]));
+        for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
+        remove(path);
+    }
+    TEST("impulses: a joint to an oscillating wall resumes with the same bits while radii grow") {
+        dem_world *w[2];
+        int k, i;
+        for (k = 0; k < 2; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_joint_desc joint = DEM_JOINT_DESC;
+            dem_motion motion = DEM_MOTION;
+            dem_material glass;
+            desc.response = DEM_RESPONSE_IMPULSES;
+            desc.orientations = 1;
+            desc.dt = DEM_R(2e-4);
+            desc.growth = larger;
+            w[k] = dem_world_create(&desc);
+            glass = scene_material(w[k], 1e7, 0.5, 0.3, 0);
+            joint.kind = DEM_JOINT_POINT;
+            joint.a = dem_sphere_add(w[k], glass, DEM_R(1e-3), at(0, 0, 0));
+            joint.point = at(3e-4, 0, 0);
+            joint.wall = dem_wall_plane_add(w[k], glass, at(0, 0, -1), at(0, 0, 1));
+            motion.kind = DEM_MOTION_OSCILLATING;
+            motion.velocity = at(0, 0, 1);
+            motion.amplitude = DEM_R(2e-4);
+            motion.frequency = 50;
+            CHECK_EQ(dem_wall_motion_set(w[k], joint.wall, &motion), DEM_OK);
+            CHECK(dem_joint_add(w[k], &joint).id > 0);
+        }
+        CHECK_EQ(scene_step(w[0], 1), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(w[0], path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(w[1], path), DEM_OK);
+        for (i = 0; i < 20; i++) {
+            for (k = 0; k < 2; k++) CHECK_EQ(scene_step(w[k], 1), DEM_OK);
+            CHECK_EQ(dem_world_hash_get(w[1]), dem_world_hash_get(w[0]));
+        }
+        for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
         remove(path);
     }
     return test_end();

@@ -611,6 +611,57 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("a time is as many steps for dem_world_settle as for dem_world_run, whatever ran before") {
+        int way, steps, k;
+        for (steps = 1; steps <= 60; steps++)
+            for (way = 0; way < 3; way++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_world *world;
+                                desc.response = DEM_RESPONSE_IMPULSES;
+                desc.gravity = at(0, 0, -9.81);
+                desc.dt = DEM_R(1e-4);
+                world = dem_world_create(&desc);
+                dem_sphere_add(world, scene_material(world, 1e6, 0.5, 0, 0), 1, at(0, 0, 0));
+                CHECK_EQ(scene_step(world, 1), DEM_OK);
+                for (k = 0; k < 8; k++) {      /* in turn so many steps and one */
+                    const double time = (k%2 ? 1 : steps)*(double)desc.dt;
+                    if (way == 2) CHECK_EQ(dem_world_settle(world, time, DEM_R(1e-12), 0, 0), DEM_ERROR_STOPPED);
+                    else if (way) CHECK_EQ(dem_world_run_to(world, dem_world_time_get(world) + time, 0, 0), DEM_OK);
+                    else CHECK_EQ(dem_world_run(world, time, 0, 0), DEM_OK);
+                    CHECK_EQ(dem_world_steps_get(world), (uint64_t)(1 + k/2*(steps + 1) + steps + k%2));
+                }
+                if (test_now.wrong) printf("        way %d, %d steps\n", way, steps);
+                dem_world_destroy(world);
+            }
+    }
+    TEST("an output that starts less than half a step from the beginning is written there, however the run steps") {
+        int way;
+        for (way = 0; way < 3; way++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_output_desc out = DEM_OUTPUT_DESC;
+            dem_world *world;
+            char text[200] = "";
+            FILE *f;
+            desc.gravity = at(0, 0, -9.81);
+            desc.dt = DEM_R(4e-4);
+            world = dem_world_create(&desc);
+            dem_sphere_add(world, scene_material(world, 1e3, 0.5, 0, 0), DEM_R(1e-3), at(0, 0, 0));
+            out.kind = DEM_OUTPUT_CSV;
+            out.path = "build/tmp/start.csv";
+            out.interval = 9e-3;
+            out.start = 1e-4;
+            CHECK(dem_output_add(world, &out).id > 0);
+            if (way == 2) CHECK_EQ(dem_world_settle(world, 4e-4, DEM_R(1e-12), 0, 0), DEM_ERROR_STOPPED);
+            else CHECK_EQ(way ? dem_world_run(world, 4e-4, 0, 0) : dem_world_step(world, 1), DEM_OK);
+            f = fopen(out.path, "rb");
+            if (f) { text[fread(text, 1, sizeof text - 1, f)] = 0; fclose(f); }
+            CHECK(strstr(text, "\n0,0,1,"));    /* time 0, step 0, one body */
+            CHECK_EQ(dem_world_steps_get(world), 1u);
+            dem_world_destroy(world);
+            remove(out.path);
+        }
+    }
+
     TEST("dem_temperature_set gives the temperature, keeps the mean velocity, shares energy evenly, and enters the "
          "ledger") {
         dem_world_desc desc = DEM_WORLD_DESC;

@@ -172,7 +172,9 @@ CODE(grains_back, static int grains_back(dem_world *w, int way) {
 })
 /* ---- laws that call the others of dem.h: 3 reals of rolling, 4 of sliding, 1 of twisting, 1 of the overlap ---- */
 CODE(law_hysteretic, static void law_hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
-    dem_law_hysteretic(c, memory + 8, f);
+    dem_contact own = *c;                      /* kun is 0 with other normal laws (dem_contact.kun) */
+    if (!(own.kun > 0)) own.kun = 2*own.kn;
+    dem_law_hysteretic(&own, memory + 8, f);
     dem_law_viscous(c, memory, f);
     dem_law_roll_constant(c, memory, f);
     dem_law_twist(c, memory + 7, f);
