@@ -1206,6 +1206,7 @@ DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_conta
    Energy: the contact stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed
    exactly along both lines. Motion along the slope kun loses nothing, so that a grain at rest
    oscillates there unless the pair has normal_damping (cn).
+   kun must be > 0. Without DEM_NORMAL_HYSTERETIC a user-defined law sets it in a copy of *c.
    Contact history: 1 real, D [m]. Tests: tests/law/test_hysteresis.c. */
 DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real kn = c->kn, kun = c->kun, kad = c->kad, soft = kun - kn, before = memory[0];
@@ -11989,7 +11990,7 @@ static void demi_wall_leave(dem_world *w, dem_wall wall) {
 }
 /* Adds a wall at rest in its first pose. */
 static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
-    wall->pose = wall->mid = wall->ahead = wall->first = wall->home;
+    wall->pose = wall->mid = wall->ahead = wall->was = wall->first = wall->home;
     return demi_wall_enter(w, call, wall);
 }
 
@@ -30829,7 +30830,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
     out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
     for (d = 0; d < w->domain_count; d++) {
         const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
-        for (; c < end && w->domains[d].kept_walls; c++) {
+        for (; c < end && w->domains[d].walls; c++) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;
@@ -32586,7 +32587,7 @@ static demi_impacts *demi_impacts_of(dem_world *w, int a, int b) {
 /* Returns the bin of an energy, J: five per decade from 1e-18 J on. */
 static int demi_impact_bin(double energy) {
     const double at = energy > 0 ? 5*(demi_log(energy)*0.43429448190325183 + 18) : 0;
-    return at > 0 ? DEMI_MIN((int)at, DEM_IMPACT_BINS - 1) : 0;
+    return at > 0 ? (int)DEMI_MIN(at, DEM_IMPACT_BINS - 1) : 0;
 }
 /* Adds a contact that has ended to the statistics. Returns 0 if memory ran out. */
 static int demi_impacts_add(dem_world *w, const dem_event *e) {
@@ -33989,8 +33990,9 @@ static dem_result demi_step_ready(dem_world *h) {
    the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     /* not in the middle of a step: what is due there is written when the step is complete */
-    dem_result result = steps && !h->stage.moved ? demi_look(h) : DEM_OK;
-    int i;
+    int i, looks = steps && !h->stage.moved;
+    dem_result result = looks && h->look.outputs_look ? demi_dt_settle(h) : DEM_OK;
+    if (looks && result == DEM_OK) result = demi_look(h);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
         demi_crew_begin(h);
@@ -34039,26 +34041,27 @@ static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn 
     return stop ? demi_fail(w, DEM_ERROR_STOPPED, "%s: stopped by the progress function at %g s",
                             call, w->clock.time) : DEM_OK;
 }
-DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
-                                 void *user) {
-    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+/* Returns the time from which a run counts: where the last one should have ended, so that runs add
+   up, or now if other steps were taken since. */
+static double demi_run_from(const dem_world *w) {
+    const demi_timing *c = &w->clock;
+    return c->run_steps == c->steps && fabs(c->run_end - c->time) <= (double)c->dt ? c->run_end
+                                                                                   : c->time;
+}
+/* Advances the world to the step nearest to `end`, s. Decides for all runs how many steps a time
+   is. */
+static dem_result demi_run_until(dem_world *w, const char *call, double end,
+                                 dem_progress_fn progress, void *user) {
     const double start = w->clock.time, begun = demi_clock();
     const uint64_t first = w->clock.steps;
-    double last = begun, end;
+    double last = begun;
     int chunk = 1;
-    if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
-        return demi_refuse(w, __func__, "seconds is %g, must be finite and >= 0", seconds);
-    if (demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_unbuilt(w, call) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (progress) w->look.tenths_told = 0;      /* dem_world_settle reports for several runs */
     if (w->stage.moved) {                       /* it ran out of memory; its time has passed */
         const dem_result rest = dem_world_step(w, 1);
         if (rest != DEM_OK) return rest;
     }
-    end = start + seconds;
-    /* it continues the last run: from the end that was requested there, so that runs add up */
-    if (w->clock.run_steps == w->clock.steps &&
-        fabs(w->clock.run_end - start) <= (double)w->clock.dt)
-        end = w->clock.run_end + seconds;
     for (;;) {
         const double left = end - w->clock.time;
         double now;
@@ -34073,8 +34076,8 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         now = demi_clock();
         if (now - last > 0.1) {
             last = now;
-            result = demi_progress(w, __func__, progress, user,
-                                   (w->clock.time - start)/seconds, begun);
+            result = demi_progress(w, call, progress, user,
+                                   (w->clock.time - start)/(end - start), begun);
             if (result != DEM_OK) return result;
         }
         /* short steps: read the clock less often */
@@ -34082,7 +34085,14 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
     }
     w->clock.run_end = end;
     w->clock.run_steps = w->clock.steps;
-    return demi_progress(w, __func__, progress, user, 1, begun);
+    return demi_progress(w, call, progress, user, 1, begun);
+}
+DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
+                                 void *user) {
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
+        return demi_refuse(w, __func__, "seconds is %g, must be finite and >= 0", seconds);
+    return demi_run_until(w, __func__, demi_run_from(w) + seconds, progress, user);
 }
 
 DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn progress,
@@ -34091,8 +34101,7 @@ DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn p
     if (!demi_finite_double(time) || time < w->clock.time - (double)w->clock.dt/2)
         return demi_refuse(w, __func__, "time is %g s, must be finite and not before now "
                            "(%g s); to go back in time, read a checkpoint", time, w->clock.time);
-    w->clock.run_steps = w->clock.steps + 1;        /* it does not continue the last run */
-    return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
+    return demi_run_until(w, __func__, time, progress, user);
 }
 
 /* Returns the largest speed, m/s, of the bodies that can move. *mean receives the root of the mean
@@ -34152,6 +34161,7 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
                                     dem_progress_fn progress, void *user) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const double begun = demi_clock(), start = w->clock.time;
+    const double end = demi_run_from(w) + seconds;
     double look, below = demi_calm(w, (double)speed, &look), last = begun;
     int i, calm = 0;
     if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
@@ -34168,15 +34178,14 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
     }
     w->look.tenths_told = 0;
     while (w->bodies.count || demi_feed_coming(w) >= 0) {
-        const double left = start + seconds - w->clock.time;
         double mean, most = demi_speeds(w, &mean);
         dem_result result;
         below = demi_calm(w, (double)speed, &look);
         calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
         if (calm > 2) break;
-        if (!(left > (double)w->clock.dt/2)) return demi_unsettled(w, seconds, below);
+        if (end - w->clock.time < (double)w->clock.dt/2) return demi_unsettled(w, seconds, below);
         look = DEMI_MAX(DEMI_MIN(look, seconds/4), (double)w->clock.dt);
-        result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
+        result = demi_run_until(w, __func__, DEMI_MIN(demi_run_from(w) + look, end), 0, 0);
         if (result != DEM_OK) return result;
         if (demi_clock() - last > 0.1) {
             last = demi_clock();
@@ -35952,7 +35961,7 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
         result = DEM_ERROR_ARGUMENT;
     dem_mesh_free(w, &mesh);
     if (result != DEM_OK) return result;
-    wall->pose = wall->ahead = wall->first = wall->home;
+    wall->pose = wall->ahead = wall->was = wall->first = wall->home;
     return demi_motion_lay(w, id, &part->motion, wall, wall);
 }
 /* All checks come before the first wall is added, so that an error leaves the world as it was. If
@@ -38505,7 +38514,7 @@ DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, 
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 25 };
+enum { DEMI_CHECKPOINT_VERSION = 26 };
 
 /* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
    three are null, the visit only counts bytes. */
@@ -38790,6 +38799,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
         demi_visit(s, &wall->ahead, sizeof wall->ahead);
+        demi_visit(s, &wall->was, sizeof wall->was);
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
         demi_visit(s, &wall->servo, sizeof wall->servo);
@@ -39517,7 +39527,8 @@ static int demi_walls_check(const demi_reader *r) {
         const dem_motion *m = &wall->motion;
         if (wall->kind == DEMI_WALL_NONE) continue;
         if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
-            !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
+            !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead) ||
+            !demi_pose_sane(&wall->was))
             return demi_lie(r, "pose of wall", i);
         if (m->kind != own->motion.kind || demi_rows_bad(r->w, demi_motion_rows, m, &k) ||
             demi_rows_bad(r->w, demi_servo_rows, &wall->servo, &k) ||
@@ -39603,10 +39614,11 @@ static int demi_outputs_check(const demi_reader *r) {
     return 1;
 }
 
-/* True if the ids of an event are possible and its numbers finite. */
+/* True if the ids of an event are possible and its numbers finite. Energies may have any value, as
+   in the ledger: a user-defined law may not know them. */
 static int demi_event_sane(const dem_world *t, const dem_event *e) {
     const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
-        e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
+        e->impulse;
     return demi_finite_double(sum) && demi_finite3(e->point) && demi_finite3(e->normal) &&
         e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
         (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
@@ -39623,8 +39635,7 @@ static int demi_events_check(const demi_reader *r) {
     for (i = 0; i < e->n.open; i++) {
         const demi_ongoing *o = &e->open[i];
         const demi_sums *s = &e->sums[i];
-        sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
-            s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
+        sum = s->impulse + s->force + s->most + o->due[3];
         if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
             (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
             return demi_lie(r, "contact event", i);
@@ -39633,16 +39644,12 @@ static int demi_events_check(const demi_reader *r) {
         if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
     for (i = 0; i < e->n.pairs; i++) {
         const demi_impacts *p = &e->pairs[i];
-        sum = p->ended + p->lost[0] + p->lost[1] + p->lost[2] + p->lost[3];
-        for (k = 0; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k] + p->energy[k];
+        for (k = 0, sum = p->ended; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k];
         if (p->a < 0 || p->b < p->a || p->b >= t->material_count || !demi_finite_double(sum))
             return demi_lie(r, "spectrum", i);
     }
-    for (i = 0, sum = 0; i < e->n.facets; i++) sum += e->facets[i];
-    if (!demi_finite_double(sum)) return demi_lie(r, "wear of facets", -1);
     for (i = 0; i < e->n.walls; i++)
-        if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
-            e->walls[i].first < 0 || e->walls[i].count < 0 ||
+        if (e->walls[i].first < 0 || e->walls[i].count < 0 ||
             e->walls[i].count > e->n.facets - e->walls[i].first ||
             (e->walls[i].id == t->walls[i].id && t->walls[i].kind != DEMI_WALL_NONE &&
              e->walls[i].count && e->walls[i].count != t->walls[i].element_count))

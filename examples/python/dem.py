@@ -5380,7 +5380,8 @@ def law_hysteretic(c, memory, f):
     is F + kad d, which is 0 on the adhesion line. [ALK07] takes |F|, which is 0 where F is 0 and large where the two
     are pulled apart. Energy: the contact stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed
     exactly along both lines. Motion along the slope kun loses nothing, so that a grain at rest oscillates there
-    unless the pair has normal_damping (cn). Contact history: 1 real, D [m].
+    unless the pair has normal_damping (cn). kun must be > 0. Without DEM_NORMAL_HYSTERETIC a user-defined law sets it
+    in a copy of *c. Contact history: 1 real, D [m].
     """
     return _lib.dempy_law_hysteretic(c, memory, f)
 

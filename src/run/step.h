@@ -865,10 +865,8 @@ static dem_result demi_step_ready(dem_world *h) {
    the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     /* not in the middle of a step: what is due there is written when the step is complete */
-    const int looks = steps && !h->stage.moved;
-    /* due is what is nearest to this step, by dt */
+    int i, looks = steps && !h->stage.moved;
     dem_result result = looks && h->look.outputs_look ? demi_dt_settle(h) : DEM_OK;
-    int i;
     if (looks && result == DEM_OK) result = demi_look(h);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
