@@ -1257,7 +1257,7 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("a checkpoint is read when a law has told the ledger and contact events energies that are not finite") {
+    TEST("a checkpoint is read when a law has returned energies that are not finite") {
         dem_world *w[2];
         int k;
         for (k = 0; k < 2; k++) {
