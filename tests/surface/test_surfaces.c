@@ -744,6 +744,36 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
+    TEST("a plane takes over a segment of a profile only if it holds the whole strip along z") {
+        static const double normal[4][3] = {{0.6, 0.4, 0}, {0, 0, 1}, {0.6, 0.4, 0.5}, {0.6, 0.4, 0.1}};
+        double moved[4];
+        int impulses, i;
+        for (impulses = 0; impulses < 2; impulses++)
+            for (i = 0; i < 4; i++) {
+                const dem_real x[4] = {DEM_R(-0.004), 0, 0, DEM_R(-0.006)};     /* a line through the ball */
+                const int32_t ends[2] = {0, 1};
+                dem_world_desc d = DEM_WORLD_DESC;
+                dem_profile profile;
+                dem_material m;
+                dem_world *w;
+                dem_body b;
+                memset(&profile, 0, sizeof profile);
+                profile.vertex_count = 2; profile.vertices = (dem_real *)x;
+                profile.segment_count = 1; profile.segments = (int32_t *)ends;
+                d.response = impulses ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+                d.dt = DEM_R(1e-6);
+                w = dem_world_create(&d);
+                m = scene_material(w, 1e7, 0.3, 0, 0);
+                dem_wall_profile_add(w, m, &profile, DEM_EDGE_RESOLVED);
+                dem_wall_plane_add(w, m, at(-0.004, 0, 0), at(normal[i][0], normal[i][1], normal[i][2]));
+                b = dem_sphere_add(w, m, DEM_R(0.0012), at(-0.0015, -0.0018, 0.05));
+                CHECK_EQ(dem_world_step(w, 1), DEM_OK);
+                moved[i] = (double)scene_state(w, b).position.x + 0.0015;
+                CHECK(moved[i] > 1e-9);
+                CHECK_REL(moved[i], moved[0], fine ? 1e-6 : 0.02);
+                dem_world_destroy(w);
+            }
+    }
     TEST("where closed boxes touch no face remains between them, however they are stacked") {
         static const struct { int floor, facets; } cases[] = {{BOXES, 84}, {BOXES_IN_MESH, 12}, {DOUBLED, 2}, {MESHES, 4}};
         int i, k;
