@@ -88,9 +88,10 @@ static int rel_joints(rel_case *c) {
     rel_end(&other);
     return result;
 }
+/* dem_field_reset sets the number of samples to 0. */
 static int rel_samples(rel_case *c) {
     int i, asked = 0;
-    if (!c->ran) return REL_SKIPPED;
+    if (!c->ran || rel_scene_has(c->s, REL_FIELD_RESET)) return REL_SKIPPED;
     for (i = 0; i < c->s->count; i++) {
         const rel_op *op = &c->s->op[i];
         dem_field f;

@@ -78,7 +78,7 @@ static int rel_run_ways(rel_case *c) {
     how.way = 1 + rel_below(&c->rng, 3);
     return rel_bits(c, c->s, &how, names[how.way]);
 }
-/* ---- files ---- */
+/* ---- files. profile_file adds profiles with DEM_EDGE_RESOLVED ---- */
 static int rel_walls_filed(rel_case *c) {
     const rel_how how = {0};
     int i, n = 0;
@@ -87,6 +87,7 @@ static int rel_walls_filed(rel_case *c) {
     for (i = 0; i < c->s->count; i++) {
         rel_op *op = &rel_image.op[i];
         if (op->call != REL_MESH && op->call != REL_PROFILE) continue;
+        if (op->call == REL_PROFILE && rel_has(c, "fractions of segments")) continue;
         op->call = op->call == REL_MESH ? REL_MESH_FILE : REL_PROFILE_FILE;
         rel_put(op, "rule", rel_below(&c->rng, 4));
         n++;
