@@ -232,16 +232,17 @@ static int rel_zero_static(const rel_case *c, rel_scene *s, int on) {
     }
     return 1;
 }
-/* A field of the pair of the first material with itself. */
+/* A field of the pair of the first material with itself. The other scene sets this pair to what it is, because
+   dem_material_set does not mix pairs again that dem_pair_set has replaced. */
 static int rel_zero_pair(rel_scene *s, const char *name, int on) {
     const int m = rel_first(s, REL_MATERIAL);
     rel_op *pair;
     rel_leave_field(s, REL_PAIR, name);
-    if (m < 0 || !on) return m >= 0;
+    if (m < 0) return 0;
     pair = rel_more(s, REL_PAIR, 0);
     rel_put(pair, "a", m);
     rel_put(pair, "b", m);
-    rel_put(pair, name, 0);
+    if (on) rel_put(pair, name, 0);
     return 1;
 }
 static int rel_zero_cohesion(const rel_case *c, rel_scene *s, int on) {
