@@ -12920,7 +12920,7 @@ static int demi_join_volumes(dem_world *w, demi_join *j) {
     return 1;
 }
 /* True if a facet lies in a plane that is a wall of this group, and grains may touch its upper
-   side: the plane then acts alone. */
+   side: the plane then acts alone. A segment is a strip along z. */
 static int demi_join_in_plane(const dem_world *w, const demi_join *j, int i) {
     const int32_t *f = j->facet + 5*i;
     int p, k;
@@ -12929,7 +12929,8 @@ static int demi_join_in_plane(const dem_world *w, const demi_join *j, int i) {
         const dem_real *R = plane->home.rotation;
         const demi_d3 n = demi_d3_of(demi_v(R[2], R[5], R[8]));
         const demi_d3 o = demi_d3_of(plane->home.position);
-        if (plane->kind != DEMI_WALL_PLANE || plane->group != w->walls[j->lead].group) continue;
+        if (plane->kind != DEMI_WALL_PLANE || plane->group != w->walls[j->lead].group ||
+            (j->per == 2 && fabs(n.z) > 1e-6)) continue;
         for (k = 0; k < j->per; k++)
             if (!(fabs(demi_d3_dot(n, demi_d3_sub(demi_d3_at(j->x + 3*f[k]), o))) <=
                   j->near_by[f[k]])) break;

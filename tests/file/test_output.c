@@ -617,7 +617,7 @@ int main(int argc, char **argv) {
             for (way = 0; way < 3; way++) {
                 dem_world_desc desc = DEM_WORLD_DESC;
                 dem_world *world;
-                                desc.response = DEM_RESPONSE_IMPULSES;
+                desc.response = DEM_RESPONSE_IMPULSES;
                 desc.gravity = at(0, 0, -9.81);
                 desc.dt = DEM_R(1e-4);
                 world = dem_world_create(&desc);
