@@ -220,6 +220,7 @@ int main(int argc, char **argv) {
             CHECK_EQ(dem_counters_get(world[2]).wall_contacts, 3);
             for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
         }
+    }
     TEST("a servo wall that presses a grain knows its contact in the first step of slabs, as in one world") {
         dem_body grain;
         dem_wall floor;
