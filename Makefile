@@ -107,7 +107,7 @@ relations: build/relations $(if $(SEED),,build/relations_float) ## draw N (400) 
 	@mkdir -p build/tmp build/out
 	@if [ "$(SEED)" ]; then build/relations --seed $(SEED) --print; \
 	else build/relations --scenes $(or $(N),400) $(if $(N),--log build/relations_$(N).log) --page build/out/relations.md; code=$$?; \
-	    echo "single precision:"; build/relations_float --scenes 100 && exit $$code; fi
+	    echo "single precision:"; build/relations_float --scenes 50 && exit $$code; fi
 
 relations-sanitized: ## the same with sanitizers of addresses and undefined behaviour; N (1000) scenes, 140 s of processor time per 1000
 	@mkdir -p build/san build/tmp

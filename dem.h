@@ -39615,11 +39615,10 @@ static int demi_outputs_check(const demi_reader *r) {
     return 1;
 }
 
-/* True if the ids of an event are possible and its numbers finite. Energies may have any value, as
-   in the ledger: a user-defined law may not know them. */
+/* True if the ids of an event are possible and its numbers finite. */
 static int demi_event_sane(const dem_world *t, const dem_event *e) {
     const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
-        e->impulse;
+        e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
     return demi_finite_double(sum) && demi_finite3(e->point) && demi_finite3(e->normal) &&
         e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
         (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
@@ -39636,7 +39635,8 @@ static int demi_events_check(const demi_reader *r) {
     for (i = 0; i < e->n.open; i++) {
         const demi_ongoing *o = &e->open[i];
         const demi_sums *s = &e->sums[i];
-        sum = s->impulse + s->force + s->most + o->due[3];
+        sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
+            s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
         if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
             (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
             return demi_lie(r, "contact event", i);
@@ -39645,12 +39645,16 @@ static int demi_events_check(const demi_reader *r) {
         if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
     for (i = 0; i < e->n.pairs; i++) {
         const demi_impacts *p = &e->pairs[i];
-        for (k = 0, sum = p->ended; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k];
+        sum = p->ended + p->lost[0] + p->lost[1] + p->lost[2] + p->lost[3];
+        for (k = 0; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k] + p->energy[k];
         if (p->a < 0 || p->b < p->a || p->b >= t->material_count || !demi_finite_double(sum))
             return demi_lie(r, "spectrum", i);
     }
+    for (i = 0, sum = 0; i < e->n.facets; i++) sum += e->facets[i];
+    if (!demi_finite_double(sum)) return demi_lie(r, "wear of facets", -1);
     for (i = 0; i < e->n.walls; i++)
-        if (e->walls[i].first < 0 || e->walls[i].count < 0 ||
+        if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
+            e->walls[i].first < 0 || e->walls[i].count < 0 ||
             e->walls[i].count > e->n.facets - e->walls[i].first ||
             (e->walls[i].id == t->walls[i].id && t->walls[i].kind != DEMI_WALL_NONE &&
              e->walls[i].count && e->walls[i].count != t->walls[i].element_count))

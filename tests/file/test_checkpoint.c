@@ -1257,36 +1257,6 @@ int main(int argc, char **argv) {
         }
         remove(path);
     }
-    TEST("a checkpoint is read when a law has returned energies that are not finite") {
-        dem_world *w[2];
-        int k;
-        for (k = 0; k < 2; k++) {
-            dem_world_desc desc = DEM_WORLD_DESC;
-            dem_events_desc record = DEM_EVENTS_DESC;
-            dem_material glass;
-            dem_wall ground;
-            desc.law = endless_law;
-            desc.dt = DEM_R(1e-5);
-            desc.ledger = 1;
-            desc.gravity = at(0, 0, -9.81);
-            w[k] = dem_world_create(&desc);
-            glass = scene_material(w[k], 1e7, 0.5, 0.3, 0);
-            ground = scene_floor(w[k], glass, -0.1, -0.1, 0.1, 0.1, 1, 1);
-            CHECK(ground.id > 0);
-            dem_sphere_add(w[k], glass, DEM_R(0.005), at(0, 0, 0.00499));
-            scene_move(w[k], dem_sphere_add(w[k], glass, DEM_R(0.005), at(0.05, 0, 0.00499)), at(0, 0, 1),
-                       at(0, 0, 0));           /* its contact ends */
-            CHECK_EQ(dem_events_record(w[k], &record), DEM_OK);
-        }
-        CHECK_EQ(scene_step(w[0], 100), DEM_OK);
-        CHECK_EQ(dem_checkpoint_write(w[0], path), DEM_OK);
-        CHECK_EQ(dem_checkpoint_read(w[1], path), DEM_OK);
-        if (test_now.wrong) puts(dem_world_error_get(w[1]));
-        for (k = 0; k < 2; k++) CHECK_EQ(scene_step(w[k], 50), DEM_OK);
-        CHECK_EQ(dem_world_hash_get(w[1]), dem_world_hash_get(w[0]));
-        for (k = 0; k < 2; k++) dem_world_destroy(w[k]);
-        remove(path);
-    }
     TEST("impulses: a joint to an oscillating wall resumes with the same bits while radii grow") {
         dem_world *w[2];
         int k, i;

@@ -192,7 +192,7 @@ static int rel_census_at(rel_case *c, rel_run *r, rel_census *n, int step) {
             return rel_broken(c, "at step %d: %d bodies of radius %.4g m more than inserted, less removed and left",
                               step,
                               (int)more[k], n->radius[k]);
-    if (!(fabs(mass + out - in) <= 1e-12*in))
+    if (!(fabs(mass + out - in) <= (sizeof(dem_real) == sizeof(double) ? 1e-12 : 1e-6)*in))
         return rel_broken(c, "at step %d: %.17g kg inserted, %.17g kg present, %.17g kg removed or left", step, in,
                           mass, out);
     return REL_HOLDS;

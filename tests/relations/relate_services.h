@@ -76,6 +76,7 @@ static int rel_run_ways(rel_case *c) {
     rel_how how = {0};
     if (!c->ran) return REL_SKIPPED;
     how.way = 1 + rel_below(&c->rng, 3);
+    if (how.way == 3 && rel_has(c, "endless feed")) how.way = 1;       /* dem_world_settle refuses it */
     return rel_bits(c, c->s, &how, names[how.way]);
 }
 /* ---- files. profile_file adds profiles with DEM_EDGE_RESOLVED ---- */
