@@ -96,8 +96,8 @@ test: $(TESTS) ## build and run all tests; FILTER=words: only those whose names 
 hard: $(HARD) build/test_facets build/test_sieve build/test_bonds ## run the hard cases in their long form, over an hour, and count cases and impacts; FILTER=words as in test
 	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $^ > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
 
-coverage: ## count lines and branches of src/ that the tests execute, by gcov; OF=core, FILTER=words as in test; PROGRAMS=test_maths: only these
-	@FILTER="$(FILTER)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" JOBS=$(JOBS) sh tests/coverage.sh
+coverage: ## count lines and branches of src/ that the tests execute, by gcov; OF=core, FILTER=words as in test; PROGRAMS=test_maths: only these; PROGRAMS=relations: only N (400) scenes of relations
+	@FILTER="$(FILTER)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" N=$(N) JOBS=$(JOBS) sh tests/coverage.sh
 
 mutants: ## N=200 SEED=1: make small errors in src/, one after another, and list those that no test notices; OF=core, PROGRAMS=... as in coverage
 	@N="$(N)" SEED="$(SEED)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" JOBS=$(if $(filter file,$(origin JOBS)),1,$(JOBS)) \
@@ -105,8 +105,12 @@ mutants: ## N=200 SEED=1: make small errors in src/, one after another, and list
 
 relations: build/relations $(if $(SEED),,build/relations_float) ## draw N (400) scenes from rows of features and check relations between runs; SEED=97: all relations of one scene; N=100000: continues where it was interrupted
 	@mkdir -p build/tmp build/out
-	@if [ "$(SEED)" ]; then build/relations --seed $(SEED) --print; \
-	else build/relations --scenes $(or $(N),400) $(if $(N),--log build/relations_$(N).log) --page build/out/relations.md; code=$$?; \
+	@if [ "$(SEED)" ]; then build/relations --seed $(SEED) --print; else \
+	    jobs=$$(seq $(JOBS)); logs=; export OMP_WAIT_POLICY=passive; \
+	    for job in $$jobs; do \
+	        log=build/relations_$(or $(N),400)_$${job}_of_$(JOBS).log; logs="$$logs --add $$log"; $(if $(N),,rm -f $$log;) \
+	        build/relations --scenes $(or $(N),400) --share $$job/$(JOBS) --log $$log & done; wait; \
+	    build/relations $$logs --page build/out/relations.md; code=$$?; \
 	    echo "single precision:"; build/relations_float --scenes 50 && exit $$code; fi
 
 relations-sanitized: ## the same with sanitizers of addresses and undefined behaviour; N (1000) scenes, 140 s of processor time per 1000

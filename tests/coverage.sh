@@ -1,7 +1,8 @@
 # sh tests/coverage.sh: which lines and branches of src/ the tests execute, and which functions none of them calls. It
-# builds the tests with gcc --coverage -O0 in build/coverage, apart from the usual objects, and runs them.
-# PROGRAMS="test_maths test_rows": only these programs; OF=core: only those of tests/core; FILTER=words as in make test;
-# JOBS (1) at a time. Output: a table, also in build/out/coverage/page.md, and pages by genhtml if it is installed.
+# builds the tests and relations with gcc --coverage -O0 in build/coverage, apart from the usual objects, and runs them.
+# PROGRAMS="test_maths test_rows": only these programs; PROGRAMS=relations: only relations, of N (400) scenes; OF=core:
+# only the tests of tests/core; FILTER=words as in make test; JOBS (1) at a time. Output: a table, also in
+# build/out/coverage/page.md, and pages by genhtml if it is installed.
 # Counted are lines with code. These rules keep what needs a failed allocation apart:
 #   - a line counts as covered if any of it is executed, so `if (!DEMI_GROW(...)) return 0;` is covered by the call;
 #   - branches of a line with DEMI_GROW( or demi_alloc( are not counted.
@@ -12,20 +13,23 @@ for tool in gcc gcov; do
     command -v $tool >/dev/null 2>&1 || { echo "SKIP: $tool not found (Debian package gcc)"; exit 0; }
 done
 JOBS=${JOBS:-1}; top=$PWD; dir=build/coverage; out=build/out/coverage
-[ "$PROGRAMS" ] || PROGRAMS=$(ls tests/${OF:-[a-z]*}/test_*.c) || exit 1
-programs=$(for program in $PROGRAMS; do echo "build/$(basename "$program" .c)"; done)
-mkdir -p $dir/build $out
+[ "$PROGRAMS" ] || PROGRAMS="$(ls tests/${OF:-[a-z]*}/test_*.c)$([ "$OF" ] || echo " relations")" || exit 1
+programs=$(for program in $PROGRAMS; do [ $program = relations ] || echo "build/$(basename "$program" .c)"; done)
+relations=; case " $(echo $PROGRAMS) " in *" relations "*) relations=build/relations;; esac
+mkdir -p $dir/build/tmp $out
 # A copy of the sources keeps their times, so that make compiles what has changed. A test that compiles dem.h into
 # itself gets src/dem.h, which includes the rooms.
-(cd $dir && rm -rf src tests examples Makefile dem.h)
-cp -rp src tests examples Makefile $dir && cp -p src/dem.h $dir/dem.h || exit 1
+(cd $dir && rm -rf src tests examples Makefile dem.h dem.c)
+cp -rp src tests examples Makefile dem.c $dir && cp -p src/dem.h $dir/dem.h || exit 1
 cd $dir || exit 1
 find build -name '*.gcda' -exec rm -f {} +
 MAKEFLAGS= OPEN_LINES=1 make -s -o dem.h -o tests/refused.h CC=gcc CPPFLAGS="-Isrc -DDEM_NO_CLONES" \
-    CFLAGS="-std=c99 -O0 -ffp-contract=off --coverage" LDFLAGS=--coverage JOBS="$JOBS" $programs || exit 1
+    CFLAGS="-std=c99 -O0 -ffp-contract=off --coverage" LDFLAGS=--coverage JOBS="$JOBS" $programs $relations || exit 1
 awk -f src/join.awk src/dem.h > dem.h          # tests read it
-JOBS=$JOBS sh tests/run.sh "$FILTER" $programs > build/tests.log
-failed=$?; grep FAILED build/tests.log
+failed=0; echo "0 passed, 0 failed" > build/tests.log
+[ -z "$programs" ] || JOBS=$JOBS sh tests/run.sh "$FILTER" $programs > build/tests.log || failed=1
+grep FAILED build/tests.log
+[ -z "$relations" ] || OMP_WAIT_POLICY=passive build/relations --scenes ${N:-400} || failed=1
 : > build/all.gcov                             # one line of src/ is in many objects
 for object in build/rooms/*.gcda build/obj/*.gcda; do
     gcov -b -c -t "$object" >> build/all.gcov 2>> build/gcov.log
@@ -109,8 +113,8 @@ LC_ALL=C awk -v info=build/all.info '
             percent(at, ab), at, ab, percent(reached, functions), reached, functions
     }' build/rooms.txt build/all.gcov > build/table.md || exit 1
 {
-    echo "# Coverage of src/ by the tests"; echo
-    echo "Tests: $(echo $programs | sed 's/build\///g')${FILTER:+, filter \"$FILTER\"}."; echo
+    echo "# Coverage of src/ by the tests and relations"; echo
+    echo "Tests: $(echo $programs $relations | sed 's/build\///g')${FILTER:+, filter \"$FILTER\"}."; echo
     cat build/table.md
     tail -n 1 build/tests.log
 } > "$top/$out/page.md"

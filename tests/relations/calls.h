@@ -75,7 +75,9 @@ static int32_t rel_do_pair(dem_world *w, void *at) {
 /* ---- shapes ---- */
 typedef struct rel_a_ellipsoid { dem_vec3 axes; } rel_a_ellipsoid;
 static const rel_field rel_f_ellipsoid[] = {F(rel_a_ellipsoid, axes, VEC, FIXED, 1, 0, 0)};
-static int32_t rel_do_ellipsoid(dem_world *w, void *a) { return dem_shape_ellipsoid_add(w, ((rel_a_ellipsoid *)a)->axes).id; }
+static int32_t rel_do_ellipsoid(dem_world *w, void *a) {
+    return dem_shape_ellipsoid_add(w, ((rel_a_ellipsoid *)a)->axes).id;
+}
 typedef struct rel_a_cluster { rel_reals positions, radii; dem_cluster_desc d; } rel_a_cluster;
 static const rel_field rel_f_cluster[] = {
     F(rel_a_cluster, positions, REALS, IN_BODY, 1, 0, 0), F(rel_a_cluster, radii, REALS, SCALAR, 1, 0, 0),
@@ -321,12 +323,15 @@ typedef struct rel_a_feed { dem_feed_desc d; dem_sizes sizes; } rel_a_feed;
     F(rel_a_feed, d.box, BOX, POINT, 1, 0, 0), FI(rel_a_feed, d.round), \
     F(rel_a_feed, d.velocity, VEC, VECTOR, 1, 0, -1), F(rel_a_feed, d.spread, REAL, SCALAR, 1, 0, -1), \
     F(rel_a_feed, d.shapes, REF_ARRAY, SCALAR, 0, 0, 0), F(rel_a_feed, d.materials, REF_ARRAY, SCALAR, 0, 0, 0), \
-    FI(rel_a_feed, d.by_mass), F(rel_a_feed, d.end, DOUBLE, SCALAR, 0, 0, 1), F(rel_a_feed, d.seed, WHOLE, SCALAR, 0, 0, 0), \
+    FI(rel_a_feed, d.by_mass), F(rel_a_feed, d.end, DOUBLE, SCALAR, 0, 0, 1), \
+    F(rel_a_feed, d.seed, WHOLE, SCALAR, 0, 0, 0), \
     F(rel_a_feed, d.inside, CODE, FIXED, 0, 0, 0), F(rel_a_feed, d.inside_user, DATA, FIXED, 0, 0, 0), \
-    F(rel_a_feed, d.amount, DOUBLE_ARRAY, SCALAR, 0, 1, 0), F(rel_a_feed, d.rate, DOUBLE, SCALAR, 0, 1, -1)    /* by mass */
+    F(rel_a_feed, d.amount, DOUBLE_ARRAY, SCALAR, 0, 1, 0), \
+    F(rel_a_feed, d.rate, DOUBLE, SCALAR, 0, 1, -1)    /* by mass */
 static const rel_field rel_f_feed[] = {REL_FEED_FIELDS};
 static const rel_field rel_f_feed_sizes[] = {
-    REL_FEED_FIELDS, FI(rel_a_feed, sizes.kind), FI(rel_a_feed, sizes.by_count), F(rel_a_feed, sizes.min, REAL, SCALAR, 1, 0, 0),
+    REL_FEED_FIELDS, FI(rel_a_feed, sizes.kind), FI(rel_a_feed, sizes.by_count),
+        F(rel_a_feed, sizes.min, REAL, SCALAR, 1, 0, 0),
     F(rel_a_feed, sizes.max, REAL, SCALAR, 1, 0, 0), F(rel_a_feed, sizes.median, REAL, SCALAR, 1, 0, 0),
     F(rel_a_feed, sizes.spread, DOUBLE, SCALAR, 0, 0, 0), F(rel_a_feed, sizes.scale, REAL, SCALAR, 1, 0, 0),
     F(rel_a_feed, sizes.modulus, DOUBLE, SCALAR, 0, 0, 0), F(rel_a_feed, sizes.deviation, REAL, SCALAR, 1, 0, 0),
@@ -352,7 +357,8 @@ typedef struct rel_a_field { dem_field_desc d; } rel_a_field;
 static const rel_field rel_f_field[] = {
     F(rel_a_field, d.box, BOX, POINT, 1, 0, 0), F(rel_a_field, d.cells, INT3, PER_AXIS, 0, 0, 0),
     F(rel_a_field, d.interval, DOUBLE, SCALAR, 0, 0, 1), FI(rel_a_field, d.stress),
-    F(rel_a_field, d.width, REAL, SCALAR, 1, 0, 0), FI(rel_a_field, d.variance), F(rel_a_field, d.start, DOUBLE, SCALAR, 0, 0, 1),
+    F(rel_a_field, d.width, REAL, SCALAR, 1, 0, 0), FI(rel_a_field, d.variance),
+        F(rel_a_field, d.start, DOUBLE, SCALAR, 0, 0, 1),
     F(rel_a_field, d.end, DOUBLE, SCALAR, 0, 0, 1), FREF(rel_a_field, d.material),
     F(rel_a_field, d.radius_min, REAL, SCALAR, 1, 0, 0), F(rel_a_field, d.radius_max, REAL, SCALAR, 1, 0, 0),
     FI(rel_a_field, d.group.id), FI(rel_a_field, d.bodies)
@@ -370,7 +376,8 @@ static const rel_field rel_f_cell[] = {
 static int32_t rel_do_cell(dem_world *w, void *at) { return dem_cell_set(w, &((rel_a_later *)at)->d) == DEM_OK; }
 
 /* ---- selections of bodies ---- */
-typedef struct rel_a_select { dem_selection d; dem_region region; dem_vec3 velocity, spin; int group; dem_real gap; } rel_a_select;
+typedef struct rel_a_select { dem_selection d; dem_region region; dem_vec3 velocity, spin; int group; dem_real gap;
+    } rel_a_select;
 #define REL_SELECTION \
     FI(rel_a_select, d.group.id), FREF(rel_a_select, d.material), FREF(rel_a_select, d.shape), \
     F(rel_a_select, d.radius_min, REAL, SCALAR, 1, 0, 0), F(rel_a_select, d.radius_max, REAL, SCALAR, 1, 0, 0)
@@ -411,7 +418,8 @@ typedef struct rel_call {
     int32_t (*call)(dem_world *w, void *arguments);
     const char *makes, *type, *desc, *zero, *text;
 } rel_call;
-enum { REL_WORLD, REL_MATERIAL, REL_PAIR, REL_ELLIPSOID, REL_CLUSTER, REL_POLYHEDRON, REL_POLYGON, REL_UNION, REL_A_BODY,
+enum { REL_WORLD, REL_MATERIAL, REL_PAIR, REL_ELLIPSOID, REL_CLUSTER, REL_POLYHEDRON, REL_POLYGON, REL_UNION,
+    REL_A_BODY,
        REL_REMOVE, REL_RESIZE, REL_FIX, REL_KICK, REL_RAIL, REL_PLANE, REL_CYLINDER, REL_REVOLVED, REL_CONE, REL_MESH,
        REL_PROFILE, REL_GRAINS, REL_SIEVE, REL_MOTION, REL_BELT, REL_WALL_REMOVE, REL_JOINT, REL_FEED, REL_OUTLET,
        REL_FIELD, REL_GRAVITY, REL_CELL, REL_TABLE, REL_FEED_SIZES, REL_PUSH, REL_GROUP, REL_BONDS, REL_SERVICE_NAMES,
@@ -425,10 +433,12 @@ static const rel_call rel_calls[REL_CALLS] = {
        "dem_material_add(w, &d)"),
     C_(pair, rel_a_pair, 0, "", "", "dem_pair", "{0}", "dem_pair_set(w, $a, $b, &d)"),
     C_(ellipsoid, rel_a_ellipsoid, 0, "s", "dem_shape", "", "", "dem_shape_ellipsoid_add(w, $axes)"),
-    C_(cluster, rel_a_cluster, 0, "s", "dem_shape", "dem_cluster_desc", "DEM_CLUSTER_DESC", "dem_shape_cluster_add(w, &d)"),
+    C_(cluster, rel_a_cluster, 0, "s", "dem_shape", "dem_cluster_desc", "DEM_CLUSTER_DESC",
+        "dem_shape_cluster_add(w, &d)"),
     C_(polyhedron, rel_a_polyhedron, 0, "s", "dem_shape", "", "", "dem_shape_polyhedron_add(w, #points/3, $points)"),
     C_(polygon, rel_a_polygon, 0, "s", "dem_shape", "", "", "dem_shape_polygon_add(w, #corners/2, $corners)"),
-    C_(union, rel_a_union, 0, "s", "dem_shape", "", "", "dem_shape_union_add(w, #positions/3, $shapes, $positions, $orientations)"),
+    C_(union, rel_a_union, 0, "s", "dem_shape", "", "", "dem_shape_union_add(w, #positions/3, $shapes, $positions, "
+        "$orientations)"),
     C_(body, rel_a_body, &rel_body_0, "b", "dem_body", "", "", ""),             /* print.h writes it */
     C_(remove, rel_a_of_body, 0, "", "", "", "", "dem_body_remove(w, $body)"),
     C_(resize, rel_a_of_body, 0, "", "", "", "", "dem_body_radius_set(w, $body, $radius)"),
@@ -453,16 +463,19 @@ static const rel_call rel_calls[REL_CALLS] = {
     C_(motion, rel_a_motion, &rel_motion_0, "", "", "dem_motion", "DEM_MOTION", "dem_wall_motion_set(w, $wall, &d)"),
     C_(belt, rel_a_motion, &rel_motion_0, "", "", "", "", "dem_wall_surface_velocity_set(w, $wall, $velocity)"),
     C_(wall_remove, rel_a_motion, &rel_motion_0, "", "", "", "", "dem_wall_remove(w, $wall)"),
-    C_(joint, rel_a_joint, &DEM_JOINT_DESC, "j", "dem_joint", "dem_joint_desc", "DEM_JOINT_DESC", "dem_joint_add(w, &d)"),
+    C_(joint, rel_a_joint, &DEM_JOINT_DESC, "j", "dem_joint", "dem_joint_desc", "DEM_JOINT_DESC",
+        "dem_joint_add(w, &d)"),
     C_(feed, rel_a_feed, &DEM_FEED_DESC, "f", "dem_feed", "dem_feed_desc", "DEM_FEED_DESC", "dem_feed_add(w, &d)"),
     C_(outlet, rel_a_outlet, &DEM_OUTLET_DESC, "o", "dem_outlet", "dem_outlet_desc", "DEM_OUTLET_DESC",
        "dem_outlet_add(w, &d)"),
-    C_(field, rel_a_field, &DEM_FIELD_DESC, "g", "dem_field", "dem_field_desc", "DEM_FIELD_DESC", "dem_field_add(w, &d)"),
+    C_(field, rel_a_field, &DEM_FIELD_DESC, "g", "dem_field", "dem_field_desc", "DEM_FIELD_DESC",
+        "dem_field_add(w, &d)"),
     C_(gravity, rel_a_later, 0, "", "", "", "", "dem_world_gravity_set(w, $gravity)"),
     C_(cell, rel_a_later, 0, "", "", "dem_cell_desc", "DEM_CELL_DESC", "dem_cell_set(w, &d)"),
     C_(table, rel_a_motion, &rel_motion_0, "", "", "dem_motion", "DEM_MOTION",
        "table(w, $wall, &d, #times, $times, $places, $turns, $loads)"),
-    C_(feed_sizes, rel_a_feed, &rel_feed_sizes_0, "f", "dem_feed", "dem_sizes sizes = DEM_SIZES; dem_feed_desc", "DEM_FEED_DESC",
+    C_(feed_sizes, rel_a_feed, &rel_feed_sizes_0, "f", "dem_feed", "dem_sizes sizes = DEM_SIZES; dem_feed_desc",
+        "DEM_FEED_DESC",
        "(d.sizes[0] = &sizes, dem_feed_add(w, &d))"),
     C_(push, rel_a_select, &rel_select_0, "", "", "dem_region region = DEM_REGION; dem_selection", "DEM_SELECTION",
        "d.region = &region; dem_bodies_velocity_set(w, &d, $velocity, $spin)"),

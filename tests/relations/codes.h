@@ -56,7 +56,8 @@ CODE(no_force, static dem_vec3 no_force(dem_vec3 x, dem_vec3 v, dem_real radius,
     (void)x; (void)v; (void)radius; (void)mass; (void)t; (void)user;
     return dem_vec3_make(0, 0, 0);
 })
-CODE(no_couple, static void no_couple(const dem_body_state *body, dem_body id, double t, dem_vec3 *force, dem_vec3 *torque,
+CODE(no_couple, static void no_couple(const dem_body_state *body, dem_body id, double t, dem_vec3 *force,
+    dem_vec3 *torque,
                                       void *user) {
     (void)body; (void)id; (void)t; (void)force; (void)torque; (void)user;
 })
@@ -131,7 +132,8 @@ CODE(nod_of, static void nod_of(double t, dem_pose *pose, void *user) {
 DATA(far_pull, dem_real far_pull[1] = {(dem_real)0.5};)
 DATA(some_rate, dem_real some_rate[1] = {(dem_real)0.3};)
 DATA(nod_by, dem_real nod_by[1] = {(dem_real)1e-4};)
-DATA(bond_own, bond bond_own = {(dem_real)1e6, (dem_real)2.5, (dem_real)3e-4, (dem_real)1e5, (dem_real)1e5, (dem_real)0.1};)
+DATA(bond_own, bond bond_own = {(dem_real)1e6, (dem_real)2.5, (dem_real)3e-4, (dem_real)1e5, (dem_real)1e5,
+    (dem_real)0.1};)
 DATA(capillary_own, capillary capillary_own = {(dem_real)0.073, (dem_real)0.3, (dem_real)4e-12};)
 DATA(charge_own, const dem_real charge_work[] = {(dem_real)4.5, (dem_real)4.8};
      static charge charge_own = {charge_work, (dem_real)1e-7, 1};)
@@ -158,8 +160,10 @@ static const rel_code rel_codes[] = {
 };
 enum { REL_CODES = (int)(sizeof rel_codes/sizeof *rel_codes) };
 static const char *const rel_texts[] = {
-    "heat charge", "one two", "coarse fine", "coarse", "x y z", "grains_####.vtp", "grains.xyz", "contacts_####.vtp", "surfaces_####.vtp",
-    "walls_####.vtp", "state_####.dem", "steps.csv", "loads.csv", "counts.csv", "mixing.csv", "values.csv", "bodies_####.csv",
+    "heat charge", "one two", "coarse fine", "coarse", "x y z", "grains_####.vtp", "grains.xyz",
+        "contacts_####.vtp", "surfaces_####.vtp",
+    "walls_####.vtp", "state_####.dem", "steps.csv", "loads.csv", "counts.csv", "mixing.csv", "values.csv",
+        "bodies_####.csv",
     "contacts_####.csv", "field_####.csv", "every_####.vtp", "replay.html"
 };
 typedef struct rel_datum { const char *name, *text; void *at; } rel_datum;
@@ -168,7 +172,8 @@ static const rel_datum rel_data[] = {
     D_(far_pull), D_(some_rate), D_(nod_by), D_(bond_own), D_(capillary_own), D_(charge_own), D_(dmt_own), D_(heat_own),
     D_(jkr_own), D_(luding_own), D_(viscoelastic_own), D_(walton_braun_own)
 };
-enum { REL_DATA_COUNT = (int)(sizeof rel_data/sizeof *rel_data), REL_TEXTS = (int)(sizeof rel_texts/sizeof *rel_texts) };
+enum { REL_DATA_COUNT = (int)(sizeof rel_data/sizeof *rel_data),
+    REL_TEXTS = (int)(sizeof rel_texts/sizeof *rel_texts) };
 static int rel_datum_of(const char *name) {
     int i;
     for (i = 0; i < REL_DATA_COUNT && strcmp(rel_data[i].name, name); i++) continue;

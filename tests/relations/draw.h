@@ -176,8 +176,14 @@ static rel_op *rel_pair_of(rel_draw *d) {
     return p;
 }
 static int rel_ignored(rel_draw *d) { if (d->materials < 2) return 0; rel_put(rel_pair_of(d), "ignored", 1); return 1; }
-static int rel_cohesion(rel_draw *d) { if (!d->impulses) return 0; rel_put(rel_pair_of(d), "cohesion", rel_vary(d, 1e-5, 1e-4)); return 1; }
-static int rel_compliance(rel_draw *d) { if (!d->impulses) return 0; rel_put(rel_pair_of(d), "compliance", rel_vary(d, 1e-4, 1e-3)); return 1; }
+static int rel_cohesion(rel_draw *d) {
+    if (d->impulses) rel_put(rel_pair_of(d), "cohesion", rel_vary(d, 1e-5, 1e-4));
+    return d->impulses;
+}
+static int rel_compliance(rel_draw *d) {
+    if (d->impulses) rel_put(rel_pair_of(d), "compliance", rel_vary(d, 1e-4, 1e-3));
+    return d->impulses;
+}
 static int rel_spinning(rel_draw *d) { rel_put(rel_pair_of(d), "spinning_friction", rel_vary(d, 0.01, 0.2)); return 1; }
 
 /* ---- shapes ---- */
@@ -222,7 +228,8 @@ static int rel_cube(rel_draw *d) {
     return rel_shape(d, rel_index(d, s), d->R);
 }
 static int rel_rock(rel_draw *d) {
-    static const double base[30] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0.6, 0.6, 0.5, -0.6, 0.5, -0.5,
+    static const double base[30] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0.6, 0.6, 0.5, -0.6,
+        0.5, -0.5,
                                     0.5, -0.6, 0.5, -0.5, -0.5, -0.6};
     double x[30];
     rel_op *s;
@@ -441,9 +448,11 @@ static void rel_one_body(rel_draw *d, double x, double y, double z, double speed
         q->v[3] = rel_vary(d, -1, 1);
     } else rel_put(b, "radius", rel_chance(d->r, 0.3) ? 0.8*d->reach[k] : d->reach[k]);
     rel_put3(b, "position", x, y, z);
-    rel_put3(b, "velocity", rel_vary(d, -speed, speed), rel_vary(d, -speed, speed), d->planar ? 0 : rel_vary(d, -speed, speed));
+    rel_put3(b, "velocity", rel_vary(d, -speed, speed), rel_vary(d, -speed, speed),
+        d->planar ? 0 : rel_vary(d, -speed, speed));
     if (rel_chance(d->r, 0.5))
-        rel_put3(b, "spin", d->planar ? 0 : rel_vary(d, -50, 50), d->planar ? 0 : rel_vary(d, -50, 50), rel_vary(d, -50, 50));
+        rel_put3(b, "spin", d->planar ? 0 : rel_vary(d, -50, 50), d->planar ? 0 : rel_vary(d, -50, 50),
+            rel_vary(d, -50, 50));
     d->body[d->bodies++] = rel_index(d, b);
 }
 static int rel_fill(rel_draw *d) {
@@ -455,7 +464,8 @@ static int rel_fill(rel_draw *d) {
     step = 2.02*reach;
     low = reach*1.02 + (d->bumps ? 0.31*d->R : 0);
     for (z = low; z < (d->planar ? low*1.01 : d->h - reach) && d->bodies < most; z += step)
-        for (y = d->planar ? low : -d->a + 1.02*reach; y < (d->planar ? d->h - reach : d->a - reach) && d->bodies < most; y += step)
+        for (y = d->planar ? low : -d->a + 1.02*reach; y < (d->planar ? d->h - reach : d->a - reach) &&
+            d->bodies < most; y += step)
             for (x = -d->a + 1.02*reach; x <= d->a - 1.02*reach && d->bodies < most; x += step) {
                 const double v = d->planar ? y - d->h/2 : y, room = (d->planar && d->round ? d->h/2 : d->a) - 1.1*reach;
                 if (d->round && x*x + v*v > room*room) continue;
@@ -479,7 +489,8 @@ static rel_op *rel_move(rel_draw *d, int kind) {
 }
 static int rel_translating(rel_draw *d) {
     rel_op *m = rel_move(d, DEM_MOTION_TRANSLATING);
-    if (m) rel_put3(m, "velocity", rel_vary(d, -0.05, 0.05), rel_vary(d, -0.05, 0.05), d->planar ? 0 : rel_vary(d, -0.05, 0.05));
+    if (m) rel_put3(m, "velocity", rel_vary(d, -0.05, 0.05), rel_vary(d, -0.05, 0.05),
+        d->planar ? 0 : rel_vary(d, -0.05, 0.05));
     return m != 0;
 }
 static int rel_rotating(rel_draw *d) {
@@ -565,7 +576,8 @@ static int rel_resized(rel_draw *d) {
     return 1;
 }
 static int rel_gravity_later(rel_draw *d) {
-    rel_put3(rel_add(d, REL_GRAVITY, rel_when(d)), "gravity", rel_vary(d, -9, 9), rel_vary(d, -9, 9), d->planar ? 0 : rel_vary(d, -9, 9));
+    rel_put3(rel_add(d, REL_GRAVITY, rel_when(d)), "gravity", rel_vary(d, -9, 9), rel_vary(d, -9, 9),
+        d->planar ? 0 : rel_vary(d, -9, 9));
     return 1;
 }
 static int rel_join(rel_draw *d, int kind, int motor) {
@@ -649,7 +661,8 @@ enum { REL_ACTS_ALWAYS, REL_ACTS_CONTACT, REL_ACTS_WALL, REL_ACTS_FED, REL_ACTS_
 static const rel_feature rel_features[] = {
     {"springs", 1, 1, 0, rel_springs, REL_ACTS_CONTACT}, {"impulses", 1, 1, 0, rel_impulses, REL_ACTS_CONTACT},
     {"planar", 0, 0, 0.2, rel_planar, 0},
-    {"linear", 2, 0, 0.2, rel_linear, 1}, {"hysteretic", 2, 0, 0.2, rel_hysteretic, 1}, {"own law", 2, 0, 0.15, rel_law, 1},
+    {"linear", 2, 0, 0.2, rel_linear, 1}, {"hysteretic", 2, 0, 0.2, rel_hysteretic, 1},
+        {"own law", 2, 0, 0.15, rel_law, 1},
     REL_ROWS_LAWS
     {"no tangent", 3, 0, 0.05, rel_no_tangent, 1}, {"viscous", 3, 0, 0.1, rel_viscous, 1},
     {"step friction", 3, 0, 0.1, rel_step_law, 1}, {"Mindlin", 3, 0, 0.1, rel_mindlin, 1},
@@ -682,7 +695,8 @@ static const rel_feature rel_features[] = {
     REL_ROWS_MATERIALS
     {"spheres", 17, 0, 0.5, rel_spheres, 1}, {"small spheres", 0, 0, 0.2, rel_spheres_small, 1},
     {"ellipsoids", 0, 0, 0.25, rel_ellipsoid, 1}, {"clusters of one", 0, 0, 0.1, rel_cluster_one, 1},
-    {"clusters", 0, 0, 0.25, rel_cluster_many, 1}, {"cubes", 18, 0, 0.25, rel_cube, 1}, {"rocks", 18, 0, 0.2, rel_rock, 1},
+    {"clusters", 0, 0, 0.25, rel_cluster_many, 1}, {"cubes", 18, 0, 0.25, rel_cube, 1},
+        {"rocks", 18, 0, 0.2, rel_rock, 1},
     {"polygons", 0, 0, 0.4, rel_polygon, 1}, {"unions", 0, 0, 0.15, rel_union, 1},
     REL_ROWS_SHAPES
     {"planes", 19, 1, 0, rel_planes, REL_ACTS_WALL}, {"flat mesh", 19, 1, 0, rel_mesh_flat, REL_ACTS_WALL},
@@ -695,12 +709,16 @@ static const rel_feature rel_features[] = {
     REL_ROWS_WALLS
     {"bodies", 20, 1, 0, rel_fill, 0},
     {"translating", 0, 0, 0.12, rel_translating, REL_ACTS_WALL}, {"rotating", 0, 0, 0.12, rel_rotating, REL_ACTS_WALL},
-    {"oscillating", 0, 0, 0.12, rel_oscillating, REL_ACTS_WALL}, {"user motion", 0, 0, 0.05, rel_nodding, REL_ACTS_WALL},
+    {"oscillating", 0, 0, 0.12, rel_oscillating, REL_ACTS_WALL},
+        {"user motion", 0, 0, 0.05, rel_nodding, REL_ACTS_WALL},
     {"servo", 0, 0, 0.1, rel_servo, 0}, {"belt", 0, 0, 0.1, rel_belt, REL_ACTS_WALL},
-    {"fixed body", 0, 0, 0.15, rel_fixed, 0}, {"kick", 0, 0, 0.1, rel_kicked, 0}, {"removal", 0, 0, 0.1, rel_removed, REL_ACTS_GONE},
+    {"fixed body", 0, 0, 0.15, rel_fixed, 0}, {"kick", 0, 0, 0.1, rel_kicked, 0},
+        {"removal", 0, 0, 0.1, rel_removed, REL_ACTS_GONE},
     {"new radius", 0, 0, 0.1, rel_resized, 0}, {"gravity later", 0, 0, 0.1, rel_gravity_later, 0},
-    {"point joint", 0, 0, 0.15, rel_joint_point, 0}, {"hinge", 0, 0, 0.15, rel_joint_hinge, 0}, {"motor", 0, 0, 0.1, rel_motor, 0},
-    {"rail", 0, 0, 0.1, rel_rail, 0}, {"feed", 0, 0, 0.15, rel_feed, REL_ACTS_FED}, {"outlet", 0, 0, 0.1, rel_outlet, 0},
+    {"point joint", 0, 0, 0.15, rel_joint_point, 0}, {"hinge", 0, 0, 0.15, rel_joint_hinge, 0},
+        {"motor", 0, 0, 0.1, rel_motor, 0},
+    {"rail", 0, 0, 0.1, rel_rail, 0}, {"feed", 0, 0, 0.15, rel_feed, REL_ACTS_FED},
+        {"outlet", 0, 0, 0.1, rel_outlet, 0},
     {"average", 0, 0, 0.1, rel_average, 0}, {"cell", 0, 0, 0.4, rel_cell, 0},
     {"wall removed", 0, 0, 0.08, rel_wall_gone, 0},
     REL_ROWS_LATER, REL_SERVICE_FEATURES,
@@ -734,8 +752,8 @@ static void rel_limit_work(rel_scene *s, int attempt) {
     s->steps = steps;
 }
 
-/* Draws a scene from a seed; attempt: how often nothing happened in what was drawn from this seed. The rows that it shall
-   have are the same in all attempts. Returns 0 if it has no bodies. */
+/* Draws a scene from a seed; attempt: how often nothing happened in what was drawn from this seed. The rows that it
+   shall have are the same in all attempts. Returns 0 if it has no bodies. */
 static int rel_draw_again(rel_scene *s, uint64_t seed, int attempt) {
     unsigned char chosen[REL_ROWS];
     rel_rng r;
@@ -768,7 +786,8 @@ static int rel_draw_again(rel_scene *s, uint64_t seed, int attempt) {
                 int pick = i + rel_below(&r, k - i), j, some = 0;
                 for (j = i; j < k; j++) if (chosen[j]) { pick = j; some++; }
                 d.feature = pick;
-                if ((some || rel_fits(chosen, pick)) && rel_fits(s->has, pick) && rel_features[pick].add(&d)) { s->has[pick] = 1; break; }
+                if ((some || rel_fits(chosen, pick)) && rel_fits(s->has, pick) &&
+                    rel_features[pick].add(&d)) { s->has[pick] = 1; break; }
                 if (k - i == 1) return 0;
                 for (j = i; j < k && some; j++) chosen[j] = 0;         /* it does not suit */
             }

@@ -1,6 +1,6 @@
-# Lists the fields of public descs that no row of calls.h names: awk -f fields.awk fields.txt dem.h calls.h. A field that
-# no scene can have is a line of fields.txt, with the reason. Exit code 1: a field is in neither, or a line of fields.txt
-# is not needed.
+# Lists the fields of public descs that no row of calls.h names: awk -f fields.awk fields.txt dem.h calls.h. A field
+# that no scene can have is a line of fields.txt, with the reason. Exit code 1: a field is in neither, or a line of
+# fields.txt is not needed.
 FILENAME ~ /fields\.txt$/ { if (NF && $1 !~ /^#/) { line = $0; sub(/^[^ ]+ +/, "", line); why[$1] = line }; next }
 FILENAME ~ /dem\.h$/ {
     if ($0 ~ /^#define DEM_LAW_COEFFICIENTS/) { coefficients = 1; next }

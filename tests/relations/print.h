@@ -87,7 +87,8 @@ static void rel_value(const rel_scene *s, const rel_field *f, const rel_set *v) 
     case REL_WHOLE: rel_say("%llu", (unsigned long long)v->v[0]); break;
     case REL_REAL: case REL_DOUBLE: rel_say("%s", rel_number(v->v[0])); break;
     default:
-        rel_say(f->type == REL_VEC ? "V(" : f->type == REL_QUAT ? "dem_quat_make(" : f->type == REL_BOX ? "dem_box_make(" :
+        rel_say(f->type == REL_VEC ? "V(" :
+            f->type == REL_QUAT ? "dem_quat_make(" : f->type == REL_BOX ? "dem_box_make(" :
                 f->type == REL_REALS ? "(dem_real[]){" : f->type == REL_INTS ? "(int32_t[]){" : "(dem_shape[]){");
         for (k = 0; k < n; k++) {
             if (k) rel_say(", ");
@@ -181,7 +182,8 @@ static void rel_text(const rel_scene *s, const rel_op *op) {
 static int rel_moves(const rel_op *op) {
     const rel_set *v = rel_given(op, "velocity", 8), *o = rel_given(op, "spin", 4);
     static const double none[3] = {0, 0, 0};
-    return (v && memcmp(v->v, none, sizeof none)) || (o && memcmp(o->v, none, sizeof none)) || rel_given(op, "scale", 5);
+    return (v && memcmp(v->v, none, sizeof none)) || (o && memcmp(o->v, none, sizeof none)) ||
+        rel_given(op, "scale", 5);
 }
 static void rel_body_text(const rel_scene *s, const rel_op *op) {
     static const char *const names[] = {"material", "shape", "radius", "position", "velocity", "spin", "orientation"};
@@ -265,13 +267,16 @@ static const rel_helper rel_helpers[] = {
         "static void fix(dem_world *w, dem_body b, int fixed) {", "    dem_selection s = DEM_SELECTION;",
         "    s.count = 1; s.bodies = &b;", "    dem_bodies_fixed_set(w, &s, fixed);", "}", 0, 0, 0, 0}},
     {REL_MEMBER, 0, {
-        "static void group(dem_world *w, dem_body b, const char *name, int member) {", "    dem_selection s = DEM_SELECTION;",
-        "    s.count = 1; s.bodies = &b;", "    dem_bodies_group_set(w, &s, dem_group_get(w, name), member);", "}", 0, 0, 0, 0}},
+        "static void group(dem_world *w, dem_body b, const char *name, int member) {",
+            "    dem_selection s = DEM_SELECTION;",
+        "    s.count = 1; s.bodies = &b;", "    dem_bodies_group_set(w, &s, dem_group_get(w, name), member);", "}",
+            0, 0, 0, 0}},
     {REL_REMOVE_SOME, 0, {
         "static void remove_some(dem_world *w, dem_body b) {", "    dem_selection s = DEM_SELECTION;",
         "    s.count = 1; s.bodies = &b;", "    dem_bodies_remove(w, &s);", "}", 0, 0, 0, 0}},
     {REL_KICK, 0, {
-        "static void kick(dem_world *w, dem_body b, dem_vec3 v, dem_vec3 spin) {", "    dem_selection s = DEM_SELECTION;",
+        "static void kick(dem_world *w, dem_body b, dem_vec3 v, dem_vec3 spin) {",
+            "    dem_selection s = DEM_SELECTION;",
         "    s.count = 1; s.bodies = &b;", "    dem_bodies_velocity_set(w, &s, v, spin);", "}", 0, 0, 0, 0}}
 };
 static void rel_print_helpers(FILE *out, const rel_scene *s) {
@@ -279,9 +284,11 @@ static void rel_print_helpers(FILE *out, const rel_scene *s) {
     for (h = 0; h < (int)(sizeof rel_helpers/sizeof *rel_helpers); h++) {
         for (i = 0; i < s->count; i++)
             if ((call = s->op[i].call == REL_MESH_FILE ? REL_MESH : s->op[i].call == REL_PROFILE_FILE ? REL_PROFILE :
-                        s->op[i].call) == rel_helpers[h].call && (rel_given(&s->op[i], "shape", 5) != 0) == rel_helpers[h].shaped &&
+                        s->op[i].call) == rel_helpers[h].call &&
+                            (rel_given(&s->op[i], "shape", 5) != 0) == rel_helpers[h].shaped &&
                 (call != REL_A_BODY || rel_moves(&s->op[i]))) break;
-        for (k = 0; k < 9 && i < s->count && rel_helpers[h].lines[k]; k++) fprintf(out, "%s\n", rel_helpers[h].lines[k]);
+        for (k = 0; k < 9 && i < s->count && rel_helpers[h].lines[k]; k++)
+            fprintf(out, "%s\n", rel_helpers[h].lines[k]);
     }
 }
 /* Where to break a text that has more than `room` characters: after a semicolon, before an argument that is no number,

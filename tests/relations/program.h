@@ -39,9 +39,11 @@ static void rel_print_head(const rel_program *p, const char *why) {
     const rel_scene *s = p->image;
     int i, j, k, n = 0, call;
     fprintf(p->out, "/* %s: %s.\n   cc -std=c99 %s%s-I. prog.c -lm */\n", rel_relations[p->relation].name, why,
-            sizeof(dem_real) < sizeof(double) ? "-DDEM_REAL=float " : "", p->relation == REL_IS_THREADS ? "-fopenmp " : "");
+            sizeof(dem_real) < sizeof(double) ? "-DDEM_REAL=float " : "",
+                p->relation == REL_IS_THREADS ? "-fopenmp " : "");
     if (rel_given(&s->op[0], "domain_bodies", 13))
-        fprintf(p->out, "static int domain_bodies = 2048;\n#define DEM_DOMAIN_BODIES domain_bodies\n#define DEM_THREADS_FIXED\n");
+        fprintf(p->out, "static int domain_bodies = 2048;\n#define DEM_DOMAIN_BODIES domain_bodies\n#define "
+            "DEM_THREADS_FIXED\n");
     fprintf(p->out, "#define DEM_IMPLEMENTATION\n#include \"dem.h\"\n%s#define V dem_vec3_make\n",
             p->relation == REL_IS_MEMORY ? "#include <stdlib.h>\n" : "");
     if (rel_needs_units(s)) fprintf(p->out, "static double unit_m = 1, unit_s = 1;\n");
@@ -89,12 +91,14 @@ static void rel_print_go(const rel_program *p) {
     if (!rel_plain(p)) fprintf(p->out, "static void go(dem_world *w, int n, int image) {\n");
     switch (p->relation) {
     case REL_IS_PIECES:
-        fprintf(p->out, "    const int pieces = image && n > %d ? %d : 1;\n    int i;\n", p->c->how.pieces, p->c->how.pieces);
+        fprintf(p->out, "    const int pieces = image && n > %d ? %d : 1;\n    int i;\n", p->c->how.pieces,
+            p->c->how.pieces);
         fprintf(p->out, "    for (i = 1; i < pieces; i++) dem_world_step(w, n/pieces);\n");
         step = "dem_world_step(w, n - (pieces - 1)*(n/pieces))";
         break;
     case REL_IS_MEMORY:
-        fprintf(p->out, "    const uint64_t end = dem_world_steps_get(w) + n;\n    if (dem_world_step(w, n) == DEM_OK || !image) return;\n");
+        fprintf(p->out, "    const uint64_t end = dem_world_steps_get(w) + n;\n    if (dem_world_step(w, n) == "
+            "DEM_OK || !image) return;\n");
         step = "dem_world_step(w, (int)(end - dem_world_steps_get(w)))";
         break;
     case REL_IS_SLABS:
@@ -102,7 +106,8 @@ static void rel_print_go(const rel_program *p) {
                 "    if (image && !slabs) slabs = dem_slabs_create(w, &d);\n", p->c->how.slabs,
                 p->c->how.axis, p->c->how.moved ? " d.balance = d.balance_interval = 1;" : "");
         fprintf(p->out, "    if (image && dem_slabs_step(slabs, n) == DEM_OK) dem_slabs_collect(slabs, w);\n");
-        if (rel_fails(p)) fprintf(p->out, "    if (image && *dem_slabs_error_get(slabs)) { puts(dem_slabs_error_get(slabs)); failed[1] = 1; }\n");
+        if (rel_fails(p)) fprintf(p->out, "    if (image && *dem_slabs_error_get(slabs)) { "
+            "puts(dem_slabs_error_get(slabs)); failed[1] = 1; }\n");
         fprintf(p->out, "    if (image) return;\n");
         break;
     case REL_IS_RESTART: if (rel_fails(p)) fprintf(p->out, "    if (image == 2) return;\n"); break;
@@ -151,8 +156,10 @@ static void rel_print_world(const rel_program *p) {
     k = p->relation;
     if (k == REL_IS_THREADS) fprintf(p->out, "    if (image) d.threads = %d;\n", p->c->how.threads);
     if (k == REL_IS_LEDGER) fprintf(p->out, "    if (image) d.ledger = 1;\n");
-    if (check == rel_energy || check == rel_no_gain || check == rel_halved || check == rel_joints) fprintf(p->out, "    d.ledger = 1;\n");
-    if (k == REL_IS_MEMORY) fprintf(p->out, "    if (image) { d.allocator.alloc_fn = give; d.allocator.free_fn = take; }\n");
+    if (check == rel_energy || check == rel_no_gain || check == rel_halved || check == rel_joints) 
+        fprintf(p->out, "    d.ledger = 1;\n");
+    if (k == REL_IS_MEMORY) fprintf(p->out, "    if (image) { d.allocator.alloc_fn = give; d.allocator.free_fn = "
+        "take; }\n");
     fprintf(p->out, "    w = dem_world_create(&d);\n");
     if (k == REL_IS_MEMORY) fprintf(p->out, "    if (!w) w = dem_world_create(&d);\n");
 }
@@ -163,7 +170,8 @@ static void rel_print_calls(const rel_program *p, int step) {
         const int two = i < p->s->count, kept = rel_kept(p->image, i) || (two && rel_kept(p->s, i));
         const char *a = rel_paper[0], *b = rel_paper[1];
         if (p->image->op[i].step != step) continue;
-        if (step && !said++ && p->relation == REL_IS_SLABS) fprintf(p->out, "    if (image) { dem_slabs_destroy(slabs); slabs = 0; }\n");
+        if (step && !said++ && p->relation == REL_IS_SLABS)
+            fprintf(p->out, "    if (image) { dem_slabs_destroy(slabs); slabs = 0; }\n");
         rel_new_page(0);
         if (two) rel_statement(p->s, i, kept);
         rel_new_page(1);
@@ -192,10 +200,12 @@ static void rel_print_calls(const rel_program *p, int step) {
 }
 static void rel_print_restart(const rel_program *p) {
     static const char *const restart[] = {"    if (!twice(old, \"relation.dem\")) exit(1);", "    w = run(2, step);",
-        "    dem_world_destroy(old);", "    if (dem_checkpoint_read(w, \"relation.dem\") != DEM_OK) puts(dem_world_error_get(w));",
+        "    dem_world_destroy(old);", "    if (dem_checkpoint_read(w, \"relation.dem\") != DEM_OK) "
+            "puts(dem_world_error_get(w));",
         "    remove(\"relation.dem\");", 0};
     const int notes = rel_notes(p->image);
-    fprintf(p->out, "static dem_world *run(int image, int until);\nstatic dem_world *continued(dem_world *old, int step) {\n%s    dem_world *w;\n",
+    fprintf(p->out, "static dem_world *run(int image, int until);\nstatic dem_world *continued(dem_world *old, int "
+        "step) {\n%s    dem_world *w;\n",
             notes ? "    const uint64_t before = noted;\n" : "");
     rel_print_closes(p->out, p->image, 4);
     rel_put_lines(p->out, restart);
@@ -219,7 +229,8 @@ static void rel_print_run(const rel_program *p) {
         while (step < mark) {
             for (next = mark, i = 1; i < s->count; i++)
                 if (s->op[i].step > step && s->op[i].step < next) next = s->op[i].step;
-            fprintf(p->out, !plain ? "    go(w, %d, image);\n" : p->relation == REL_IS_RESTART ? "    if (image < 2) dem_world_step(w, %d);\n" :
+            fprintf(p->out, !plain ? "    go(w, %d, image);\n" : p->relation == REL_IS_RESTART ? "    if (image < 2) "
+                "dem_world_step(w, %d);\n" :
                     "    dem_world_step(w, %d);\n", next - step);
             step = next;
             if (step < mark) {
@@ -235,10 +246,13 @@ static void rel_print_run(const rel_program *p) {
         if (p->relation == REL_IS_RESTART)
             fprintf(p->out, "    if (until == %d) return w;\n    if (image == 1) w = continued(w, %d);\n", step, step);
         if (p->relation == REL_IS_USED)
-            fprintf(p->out, "    if (image) {\n%s        if (!twice(w, \"relation.dem\")) exit(1);\n        dem_world_step(w, 3);\n"
-                    "        if (dem_checkpoint_read_changed(w, \"relation.dem\", \"\") != DEM_OK) puts(dem_world_error_get(w));\n"
+            fprintf(p->out, "    if (image) {\n%s        if (!twice(w, \"relation.dem\")) exit(1);\n        "
+                "dem_world_step(w, 3);\n"
+                    "        if (dem_checkpoint_read_changed(w, \"relation.dem\", \"\") != DEM_OK) "
+                        "puts(dem_world_error_get(w));\n"
                     "        remove(\"relation.dem\");\n%s    }\n",
-                    rel_notes(p->image) ? "        const uint64_t before = noted;\n" : "", rel_notes(p->image) ? "        noted = before;\n" : "");
+                    rel_notes(p->image) ? "        const uint64_t before = noted;\n" : "",
+                        rel_notes(p->image) ? "        noted = before;\n" : "");
         rel_print_calls(p, step);
     }
     rel_print_closes(p->out, p->image, 4);
@@ -268,12 +282,15 @@ static void rel_print_near(const rel_program *p) {
     const rel_set *dt = rel_given(&p->s->op[0], "d.dt", 4);
     const char *const of = p->c->reversed ? "N - 1 - i" : "i";
     int e;
-    fprintf(p->out, "enum { N = %d };\nint main(void) {\n    static dem_body_state s[2][N];\n    int k, i, e, wrong = 0;\n"
+    fprintf(p->out, "enum { N = %d };\nint main(void) {\n    static dem_body_state s[2][N];\n    int k, i, e, wrong "
+        "= 0;\n"
             "    for (k = 0; k < 2; k++) {\n        dem_world *w = run(k);\n"
             "        for (i = 0; i < N; i++) dem_body_get(w, b[i], &s[k][i]);\n    }\n    for (i = 0; i < N; i++) {\n",
             rel_bodies(p->s));
-    fprintf(p->out, "        const dem_vec3 x = s[0][i].position, v = s[0][i].velocity%s;\n", exact ? ", o = s[0][i].spin" : "");
-    fprintf(p->out, "        const dem_vec3 y = s[1][%s].position, u = s[1][%s].velocity%s;\n", of, of, exact ? ", c = s[1][i].spin" : "");
+    fprintf(p->out, "        const dem_vec3 x = s[0][i].position, v = s[0][i].velocity%s;\n",
+        exact ? ", o = s[0][i].spin" : "");
+    fprintf(p->out, "        const dem_vec3 y = s[1][%s].position, u = s[1][%s].velocity%s;\n", of, of,
+        exact ? ", c = s[1][i].spin" : "");
     rel_new_page(0);
     rel_say("const double want[] = {");
     for (e = 0; e < parts; e++) {
@@ -286,7 +303,8 @@ static void rel_print_near(const rel_program *p) {
     fprintf(p->out, "        for (e = 0; e < %d; e++) {\n", parts);
     fprintf(p->out, "            if (%s", leave ? "(x.x == 0 && x.y == 0) || " : "");
     if (exact) fprintf(p->out, "is[e] == want[e]) continue;\n");
-    else fprintf(p->out, "fabs(is[e] - want[e]) <= (e < 3 ? %.3g : %.3g)) continue;\n", p->c->allowed[0], p->c->allowed[1]);
+    else fprintf(p->out, "fabs(is[e] - want[e]) <= (e < 3 ? %.3g : %.3g)) continue;\n", p->c->allowed[0],
+        p->c->allowed[1]);
     fprintf(p->out, "            printf(\"body %%d, number %%d: %%.17g, should be %%.17g\\n\", i, e, is[e], want[e]);\n"
             "            wrong = 1;\n        }\n    }\n    return %s;\n}\n",
             rel_fails(p) ? "wrong || failed[0] != failed[1]" : "wrong");
@@ -296,22 +314,29 @@ static int rel_print_physics(const rel_program *p) {
     const rel_check check = rel_relations[p->relation].check;
     const int first = p->s->steps/(p->s->marks ? p->s->marks : REL_MARKS);
     if (check == rel_angular)
-        fprintf(p->out, "int main(void) {\n    const dem_totals a = dem_totals_get(run(0)), b = dem_totals_get(run(1));\n    int e, wrong = 0;\n"
-                "    for (e = 0; e < 3; e++) {\n        printf(\"%%.17g %%.17g kg m2/s\\n\", a.angular[e], b.angular[e]);\n"
-                "        wrong |= !(fabs(b.angular[e] - a.angular[e]) <= %.3g);\n    }\n    return wrong;\n}\n", p->c->allowed[0]);
+        fprintf(p->out, "int main(void) {\n    const dem_totals a = dem_totals_get(run(0)), b = "
+            "dem_totals_get(run(1));\n    int e, wrong = 0;\n"
+                "    for (e = 0; e < 3; e++) {\n        printf(\"%%.17g %%.17g kg m2/s\\n\", a.angular[e], "
+                    "b.angular[e]);\n"
+                "        wrong |= !(fabs(b.angular[e] - a.angular[e]) <= %.3g);\n    }\n    return wrong;\n}\n",
+                    p->c->allowed[0]);
     else if (check == rel_weight)
         fprintf(p->out, "int main(void) {\n    dem_world *w = run(0);\n    double force[3] = {0, 0, 0};\n    int i;\n"
-                "    for (i = 1; i < 20; i++) {\n        dem_wall_loads l;\n        if (dem_wall_loads_get(w, (dem_wall){i}, &l) != DEM_OK) continue;\n"
+                "    for (i = 1; i < 20; i++) {\n        dem_wall_loads l;\n        if (dem_wall_loads_get(w, "
+                    "(dem_wall){i}, &l) != DEM_OK) continue;\n"
                 "        force[0] += l.force.x; force[1] += l.force.y; force[2] += l.force.z;\n    }\n"
                 "    printf(\"%%.9g %%.9g %%.9g N on the walls, weight %%.9g N\\n\", force[0], force[1], force[2],\n"
                 "           9.81*dem_totals_get(w).mass);\n    return 0;\n}\n");
     else if (check == rel_rest)
-        fprintf(p->out, "int main(void) {\n    const double a = dem_counters_get(run(0)).speed_max, b = dem_counters_get(run(1)).speed_max;\n"
-                "    printf(\"%%g m/s after %d steps, %%g m/s at the end\\n\", a, b);\n    return b > %.3g;\n}\n", first, p->c->allowed[0]);
+        fprintf(p->out, "int main(void) {\n    const double a = dem_counters_get(run(0)).speed_max, b = "
+            "dem_counters_get(run(1)).speed_max;\n"
+                "    printf(\"%%g m/s after %d steps, %%g m/s at the end\\n\", a, b);\n    return b > %.3g;\n}\n",
+                    first, p->c->allowed[0]);
     else if (check == rel_no_gain || check == rel_energy)
         fprintf(p->out, "int main(void) {\n    const dem_ledger l = dem_ledger_get(run(0));\n"
                 "    const double out = l.normal + l.slide + l.tangent + l.rolling;\n"
-                "    printf(\"residual %%g J; normal %%g, slide %%g, tangent %%g, rolling %%g J\\n\", l.residual, l.normal, l.slide, l.tangent,\n"
+                "    printf(\"residual %%g J; normal %%g, slide %%g, tangent %%g, rolling %%g J\\n\", l.residual, "
+                    "l.normal, l.slide, l.tangent,\n"
                 "           l.rolling);\n    return l.residual%s > %.3g;\n}\n", check == rel_energy ? "" : " - out",
                 p->c->allowed[0]);
     else if (check == rel_halved)
@@ -350,14 +375,17 @@ static void rel_print_asked(const rel_program *p) {
         rel_line(p->out, 4, rel_paper[0]);
     }
     if (rel_is(p, rel_left)) {
-        fprintf(p->out, "    dem_world *all = run(1);           /* without the outlet */\n    dem_body_state s;\n    int i;\n"
-                "    for (i = 0; i < %d; i++) {\n        if (dem_body_get(w, b[i], &s) == DEM_OK || dem_body_get(all, b[i], &s) != DEM_OK) continue;\n",
+        fprintf(p->out, "    dem_world *all = run(1);           /* without the outlet */\n    dem_body_state s;\n    "
+            "int i;\n"
+                "    for (i = 0; i < %d; i++) {\n        if (dem_body_get(w, b[i], &s) == DEM_OK || "
+                    "dem_body_get(all, b[i], &s) != DEM_OK) continue;\n",
                 rel_bodies(s));
         for (i = 0; i < 3 && box; i++) {
             fprintf(p->out, "        wrong |= s.position.%c < %s - 1e-9", "xyz"[i], rel_number(box->v[i]));
             fprintf(p->out, " || s.position.%c > %s + 1e-9;\n", "xyz"[i], rel_number(box->v[3 + i]));
         }
-        fprintf(p->out, "        printf(\"body %%d left at %%.9g %%.9g %%.9g m\\n\", i, s.position.x, s.position.y, s.position.z);\n    }\n");
+        fprintf(p->out, "        printf(\"body %%d left at %%.9g %%.9g %%.9g m\\n\", i, s.position.x, s.position.y, "
+            "s.position.z);\n    }\n");
     }
     fprintf(p->out, "    puts(wrong ? \"wrong\" : \"right\");\n    return wrong;\n}\n");
 }
@@ -367,17 +395,22 @@ static void rel_print_main(const rel_program *p) {
     if (rel_is(p, rel_joints) || rel_is(p, rel_samples) || rel_is(p, rel_left)) rel_print_asked(p);
     else if (p->relation == REL_IS_COUNTS)
         fprintf(p->out, "int main(void) {\n    const dem_body_counts n = dem_body_counts_get(run(0));\n"
-                "    printf(\"%%d inserted, %%d present, %%d removed, %%d left\\n\", (int)n.inserted, (int)n.present, (int)n.removed,\n"
+                "    printf(\"%%d inserted, %%d present, %%d removed, %%d left\\n\", (int)n.inserted, "
+                    "(int)n.present, (int)n.removed,\n"
                 "           (int)n.left);\n    return n.inserted != n.present + n.removed + n.left;\n}\n");
     else if (p->relation == REL_IS_MOMENTUM)
-        fprintf(p->out, "int main(void) {\n    double p[2][3] = {{0}};\n    int k, i, e, wrong = 0;\n    for (k = 0; k < 2; k++) {\n"
+        fprintf(p->out, "int main(void) {\n    double p[2][3] = {{0}};\n    int k, i, e, wrong = 0;\n    for (k = 0; "
+            "k < 2; k++) {\n"
                 "        dem_world *w = run(k);\n        for (i = 0; i < %d; i++) {\n            dem_body_state s;\n"
-                "            if (dem_body_get(w, b[i], &s) != DEM_OK) continue;\n            p[k][0] += s.mass*s.velocity.x;\n"
-                "            p[k][1] += s.mass*s.velocity.y;\n            p[k][2] += s.mass*s.velocity.z;\n        }\n    }\n"
+                "            if (dem_body_get(w, b[i], &s) != DEM_OK) continue;\n            p[k][0] += "
+                    "s.mass*s.velocity.x;\n"
+                "            p[k][1] += s.mass*s.velocity.y;\n            p[k][2] += s.mass*s.velocity.z;\n        "
+                    "}\n    }\n"
                 "    for (e = 0; e < 3; e++) {\n        printf(\"%%.17g %%.17g kg m/s\\n\", p[0][e], p[1][e]);\n"
                 "        wrong |= fabs(p[1][e] - p[0][e]) > %.3g;\n    }\n"
                 "    return wrong;\n}\n", rel_bodies(p->s), p->c->allowed[0]);
-    else if (p->relation == REL_IS_LEDGER || (p->relation >= REL_IS_SLABS && (p->relation < REL_IS_READERS || p->relation > REL_IS_GRAIN_FILES) &&
+    else if (p->relation == REL_IS_LEDGER || (p->relation >= REL_IS_SLABS &&
+        (p->relation < REL_IS_READERS || p->relation > REL_IS_GRAIN_FILES) &&
               !rel_is(p, rel_slabs_beside))) rel_print_near(p);
     else if (p->relation == REL_IS_GRAIN_FILES)
         fprintf(p->out, "int main(void) { return !grains_back(run(0), %d); }\n", p->c->bad);
@@ -387,7 +420,8 @@ static void rel_print_main(const rel_program *p) {
         fprintf(p->out, "int main(void) {\n    dem_world *first = run(0%s), *second = run(1%s);\n"
                 "    const uint64_t p = dem_world_hash_get(first), q = dem_world_hash_get(second);\n"
                 "    printf(\"%%016llx %%016llx\\n\", (unsigned long long)p, (unsigned long long)q);\n"
-                "    return %s;\n}\n", arguments, arguments, rel_fails(p) ? "p != q || failed[0] != failed[1]" : "p != q");
+                "    return %s;\n}\n", arguments, arguments,
+                    rel_fails(p) ? "p != q || failed[0] != failed[1]" : "p != q");
 }
 /* Prints the program. why: null: what the relation says. Returns 1 if the scene breaks the relation. */
 static int rel_print_program(FILE *out, const rel_scene *s, int relation, const char *why) {

@@ -59,7 +59,7 @@ static void rel_map_scene(rel_scene *to, const rel_scene *from, const rel_map *m
     rel_copy(to, from);
     for (i = 0; i < to->count; i++) {
         rel_op *op = &to->op[i];
-        for (j = 0; j < rel_calls[op->call].field_count; j++) {    /* points and directions left at defaults move, too */
+        for (j = 0; j < rel_calls[op->call].field_count; j++) {    /* points and directions at defaults move, too */
             const rel_field *f = &rel_calls[op->call].fields[j];
             const char *defaults = (const char *)rel_calls[op->call].defaults;
             dem_vec3 x = {0, 0, 0};
@@ -401,7 +401,8 @@ static int rel_several(rel_case *c) {
 /* ---- belts ---- */
 /* A plane that moves in itself and a plane at rest whose surface moves push grains in the same way. */
 static int rel_belt_or_wall(rel_case *c) {
-    static const int moves[] = {REL_MOTION, REL_TABLE, REL_BELT, REL_RAIL, REL_OUTLET, -1};    /* which may follow a wall */
+    /* which may follow a wall */
+    static const int moves[] = {REL_MOTION, REL_TABLE, REL_BELT, REL_RAIL, REL_OUTLET, -1};
     const rel_how how = {0};
     const rel_set *n;
     rel_op *op;

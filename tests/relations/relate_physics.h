@@ -199,7 +199,8 @@ static int rel_census_at(rel_case *c, rel_run *r, rel_census *n, int step) {
 }
 /* Counts at every step, without what changes masses. The sums are rounded. */
 static int rel_counted(rel_case *c) {
-    static const int no[] = {REL_RESIZE, REL_REMOVE_SOME, REL_OUTLET_RESET, REL_FEED_SIZES, REL_FILL, REL_FILL_SHAPE, REL_SPHERES, -1};
+    static const int no[] = {REL_RESIZE, REL_REMOVE_SOME, REL_OUTLET_RESET, REL_FEED_SIZES, REL_FILL,
+        REL_FILL_SHAPE, REL_SPHERES, -1};
     static const char *const fields[] = {"growth", 0};
     static rel_run r;
     static rel_census n;
@@ -383,7 +384,8 @@ static const double rel_settling = 0.12, rel_resting = 1e-5;           /* s, m/s
 /* A copy with at most eight bodies, gravity, walls at rest, and damping that ends (settle in codes.h). */
 static int rel_leave_motion(rel_case *c, double time) {
     const double dt = rel_find((rel_op *)&c->s->op[0], "dt")->v[0], g = 9.81;
-    const int flat = rel_has(c, "cubes") || rel_has(c, "rocks"), sieve = rel_has(c, "sieve");        /* which take long */
+    const int flat = rel_has(c, "cubes") || rel_has(c, "rocks"), sieve = rel_has(c, "sieve");
+        /* which take long */
     int i, n = 0;
     rel_copy(&rel_own, c->s);
     rel_leave_calls(&rel_own, rel_bodies_in_walls, 1);

@@ -15,7 +15,7 @@ typedef struct rel_mark {
     double *x, speed;
     uint64_t hash, unsolved, noted;
     dem_totals totals;
-    double most[2];                            /* sums of the sizes of m v and of what adds up to the angular momentum */
+    double most[2];                            /* sums of the sizes of m v, and of the parts of the angular momentum */
     double impulse[3];                         /* N s, of grains on all walls */
     dem_ledger ledger;
 } rel_mark;
@@ -234,7 +234,8 @@ static void rel_put_mark(rel_run *r, int step) {
                 (double)b.spin.z, (double)b.orientation.w, (double)b.orientation.x, (double)b.orientation.y,
                 (double)b.orientation.z};
             const double v = sqrt(all[3]*all[3] + all[4]*all[4] + all[5]*all[5]);
-            const double inertia = fmax((double)b.inertia, fmax((double)b.moments.x, fmax((double)b.moments.y, (double)b.moments.z)));
+            const double inertia = fmax((double)b.inertia, fmax((double)b.moments.x,
+                fmax((double)b.moments.y, (double)b.moments.z)));
             for (k = 0; k < REL_PER_BODY; k++) x[k] = all[k];
             m->most[0] += (double)b.mass*v;
             m->most[1] += (double)b.mass*v*sqrt(all[0]*all[0] + all[1]*all[1] + all[2]*all[2]) +

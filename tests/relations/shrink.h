@@ -46,7 +46,7 @@ static int rel_fewer_ops(rel_shrinking *h) {
         }
     return changed;
 }
-/* Fields back to their defaults, references to the first op of a kind, spheres instead of shapes, joints to the ground. */
+/* Fields back to defaults, references to the first op of a kind, spheres instead of shapes, joints to the ground. */
 static int rel_fewer_fields(rel_shrinking *h) {
     int i, j, k, changed = 0;
     for (i = 0; i < h->s->count; i++)
@@ -146,7 +146,8 @@ static int rel_rounder_numbers(rel_shrinking *h) {
             for (k = n > 1 ? -1 : 0; k < n; k++)           /* a set at once, then one after the other */
                 for (d = 0; d < 4; d++) {
                     rel_copy(&rel_smaller, h->s);
-                    if (!rel_round(&rel_smaller.op[i], j, k < 0 ? 0 : k, k < 0 ? REL_POOL : k + 1, digits[d]) || !rel_take(h)) continue;
+                    if (!rel_round(&rel_smaller.op[i], j, k < 0 ? 0 : k, k < 0 ? REL_POOL : k + 1, digits[d]) ||
+                        !rel_take(h)) continue;
                     changed = 1;
                     break;
                 }
