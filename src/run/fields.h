@@ -227,7 +227,7 @@ static DEMI_APART void demi_means_add(const dem_world *w, int i) {
 /* True if the field is due for a sample at the present time. */
 static int demi_field_due(const dem_world *w, const demi_field *f) {
     return f->used && w->clock.time >= f->next - 1e-6*(double)w->clock.dt &&
-        !(f->desc.end > 0 && w->clock.time > f->desc.end);
+        !(f->desc.end > 0 && w->clock.time > f->desc.end + 1e-6*(double)w->clock.dt);
 }
 /* The time of the sample after the present one: start plus a multiple of the interval, s. */
 static double demi_field_next(const dem_world *w, const dem_field_desc *d) {

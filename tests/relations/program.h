@@ -370,6 +370,7 @@ static void rel_print_asked(const rel_program *p) {
             rel_say("wrong |= samples_wrong(w, ");
             rel_name(s, i);
             rel_say(", %s", rel_number(rel_or(op, "start", 0)));
+            rel_say(", %s", rel_number(rel_or(op, "end", 0)));
             rel_say(", %s, %d);", rel_number(rel_or(op, "interval", 0)), op->step);
         }
         rel_line(p->out, 4, rel_paper[0]);

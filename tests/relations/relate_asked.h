@@ -23,8 +23,10 @@ static int joint_wrong(dem_world *w, dem_joint j, dem_body a, dem_body b) {
     way = c.dt*(length(p.velocity) + length(q.velocity));
     return s.gap > 1e-4*p.radius + turn*turn*way;
 })
-/* An average is sampled at the first step from each multiple of its interval on, and late ones at once. */
-CODE(samples_wrong, static int samples_wrong(dem_world *w, dem_field f, double start, double interval, int added) {
+/* An average is sampled at the first step from each multiple of its interval on, and late ones at once, up to its end
+   (0: none). */
+CODE(samples_wrong, static int samples_wrong(dem_world *w, dem_field f, double start, double end, double interval,
+    int added) {
     const double dt = (double)dem_counters_get(w).dt;
     double last = -1;
     uint64_t n = 0;
@@ -33,8 +35,9 @@ CODE(samples_wrong, static int samples_wrong(dem_world *w, dem_field f, double s
     if (!(interval > 0) || dem_field_get(w, f, &d) != DEM_OK) return 0;
     for (k = added + 1; k <= (int)dem_world_steps_get(w); k++) {
         const double m = floor((k*dt + 1e-6*dt - start)/interval);
-        if (m > last) n++;
-        if (m > last) last = m;
+        if (m <= last || (end > 0 && k*dt > end + 1e-6*dt)) continue;
+        n++;
+        last = m;
     }
     return d.samples != n;
 })
@@ -98,7 +101,8 @@ static int rel_samples(rel_case *c) {
         if (op->call != REL_FIELD || !c->base.made[i].id) continue;
         f.id = c->base.made[i].id;
         asked = 1;
-        if (samples_wrong(c->base.w, f, rel_or(op, "start", 0), rel_or(op, "interval", 0), op->step))
+        if (samples_wrong(c->base.w, f, rel_or(op, "start", 0), rel_or(op, "end", 0), rel_or(op, "interval", 0),
+                          op->step))
             return rel_broken(c, "an average has another number of samples than multiples of its interval");
     }
     return asked ? REL_HOLDS : REL_SKIPPED;
@@ -169,7 +173,17 @@ static int rel_slabs_beside(rel_case *c) {
     return result;
 }
 /* ---- whole periods ---- */
-/* Bodies and feeds that begin two periods away begin in the domain. */
+/* Does the body of an op follow a wall? */
+static int rel_rides(const rel_scene *s, int body) {
+    int i;
+    for (i = 0; i < s->count; i++)
+        if (s->op[i].call == REL_RAIL && (int)rel_or(&s->op[i], "body", -1) == body &&
+            rel_or(&s->op[i], "wall", -1) >= 0) return 1;
+    return 0;
+}
+/* Bodies and feeds that begin two periods away begin in the domain. A body on the rail of a wall moves as if it were
+   part of it (dem_rail_desc.wall), so two periods farther from the axis of a rotation it moves on a larger circle:
+   such bodies stay. */
 static int rel_periods(rel_case *c) {
     static const char *const without[] = {"point joint", "hinge", "motor", "cell", 0};
     const rel_how how = {0};
@@ -181,7 +195,7 @@ static int rel_periods(rel_case *c) {
     box = rel_find(&rel_image.op[0], "domain");
     if (!sides || !box) return REL_SKIPPED;
     for (i = 0; i < rel_image.count; i++) {
-        const int body = rel_image.op[i].call == REL_A_BODY, feed = rel_image.op[i].call == REL_FEED;
+        const int body = rel_image.op[i].call == REL_A_BODY && !rel_rides(c->s, i), feed = rel_image.op[i].call == REL_FEED;
         rel_set *x = body ? rel_find(&rel_image.op[i], "position") : feed ? rel_find(&rel_image.op[i], "box") : 0;
         for (k = 0; x && k < (feed ? 6 : 3); k++)
             if ((int)sides->v[k%3] == DEM_BOUNDARY_PERIODIC) x->v[k] += 2*(box->v[3 + k%3] - box->v[k%3]);

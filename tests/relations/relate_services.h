@@ -34,8 +34,9 @@ static int rel_bits(rel_case *c, const rel_scene *s, const rel_how *how, const c
 
 /* ---- readers change nothing: all at once; if that breaks, the first that does so alone. dem_contacts_each and files
    of contacts compute forces first if the scene has changed, as a step would. With growth the step computes them again
-   for the new radii, and by impulses the first computation has moved spins by rounding;
-       no comment promises these bits. ---- */
+   for the new radii. Then by impulses the first computation has moved spins by rounding, and the search for contacts of
+   other shapes than spheres begins with what the first one has found; no comment promises these bits, so such scenes
+   are compared without growth. ---- */
 static int rel_add_reader(rel_scene *s, int reader, int step) {
     rel_op *op = &s->op[s->count++];
     if (s->count >= REL_OPS) return 0;
@@ -48,9 +49,16 @@ static int rel_add_reader(rel_scene *s, int reader, int step) {
 static int rel_read_only(rel_case *c) {
     const int marks = c->s->marks ? c->s->marks : REL_MARKS;
     const int steps[3] = {0, 1 + rel_below(&c->rng, c->s->steps), c->s->steps*(1 + rel_below(&c->rng, marks))/marks};
+    static const char *const growth[] = {"growth", 0};
     const rel_how how = {0};
-    int k, e, only, result = REL_HOLDS, at;
-    if (!c->ran || (rel_has(c, "impulses") && rel_has(c, "growth"))) return REL_SKIPPED;
+    int k, e, only, result = REL_HOLDS, at, shapes = 0;
+    if (!c->ran) return REL_SKIPPED;
+    for (k = 0; k < c->s->count; k++) shapes |= c->s->op[k].call >= REL_ELLIPSOID && c->s->op[k].call <= REL_UNION;
+    if (rel_has(c, "growth") && (rel_has(c, "impulses") || shapes)) {
+        rel_copy(&rel_own, c->s);
+        rel_leave_fields(&rel_own, REL_WORLD, growth);
+        if (!rel_instead(c)) return REL_SKIPPED;
+    }
     for (only = -1; only < 0 || rel_reader_at(only) >= 0; only++) {
         int alone;
         rel_copy(&rel_image, c->s);

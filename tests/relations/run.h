@@ -152,14 +152,17 @@ static int rel_calls_at(rel_run *r, int from, int step) {
         const rel_op *op = &r->s->op[i];
         const uint64_t before = noted;
         const int64_t allocations = rel_allocations.count;
+        const int fills = op->call == REL_FILL || op->call == REL_FILL_SHAPE;
+        uint64_t bodies;
         int32_t made;
         if (op->step != step) continue;
+        bodies = fills ? dem_body_counts_get(r->w).inserted : 0;
         rel_arguments(r, op, a.bytes, pool, ints);
         made = rel_calls[op->call].call(r->w, a.bytes);
         r->took[i] = 1;
-        if (op->call == REL_READ && allocations < rel_allocations.refuse &&
-            rel_allocations.count >= rel_allocations.refuse) {
-            noted = before;                    /* again */
+        if ((op->call == REL_READ || (fills && dem_body_counts_get(r->w).inserted == bodies)) &&
+            allocations < rel_allocations.refuse && rel_allocations.count >= rel_allocations.refuse) {
+            noted = before;                    /* again; a fill returns 0 without room, too */
             made = 0;
         }
         if (!made && rel_allocations.refuse && rel_allocations.count >= rel_allocations.refuse) {

@@ -363,6 +363,32 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(world);
     }
+    TEST("a field whose window ends at a step has the sample of that step, however its time is rounded") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_field_desc d = DEM_FIELD_DESC;
+        dem_field_data data;
+        dem_world *world;
+        int n;
+        desc.dt = DEM_R(1e-4);
+        desc.allow_large_dt = 1;
+        world = dem_world_create(&desc);
+        dem_sphere_add(world, scene_material(world, 1e7, 0.5, 0.3, 0), DEM_R(0.01), at(0, 0, 0));
+        d.box = box_of(-1, -1, -1, 1, 1, 1);
+        d.cells[0] = d.cells[1] = d.cells[2] = 1;
+        d.interval = 1e-4;
+        for (n = 1; n <= 50; n++) {
+            d.end = n/1e4;                     /* s; 3e-4 s is less than 3 x 1e-4 s, as they are rounded */
+            CHECK_EQ(dem_field_add(world, &d).id, n);
+        }
+        CHECK_EQ(scene_step(world, 60), DEM_OK);
+        for (n = 1; n <= 50; n++) {
+            dem_field field;
+            field.id = n;
+            dem_field_get(world, field, &data);
+            CHECK_EQ(data.samples, n);
+        }
+        dem_world_destroy(world);
+    }
     TEST("a planar world rejects a field whose box has no bodies, because z = 0 is not in it, and stays as it was") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
