@@ -143,6 +143,13 @@ static int rel_code_flag(const rel_case *c, int turned) {
             }
     return 0;
 }
+/* Leaves out outlets whose region is in the frame of a wall (dem_outlet_desc.box: "in that frame"): an image would have
+   to move it with the frame of the other wall. */
+static void rel_leave_framed(rel_scene *s) {
+    int i;
+    for (i = s->count - 1; i > 0; i--)
+        if (i < s->count && s->op[i].call == REL_OUTLET && rel_find(&s->op[i], "d.frame")) rel_drop_ops(s, i, i + 1);
+}
 /* Leaves out what has axes or a direction of its own, or draws random places: feeds, the shear of a cell, user-defined
    motions. */
 static int rel_leave_axes(rel_case *c) {
@@ -155,6 +162,7 @@ static int rel_leave_axes(rel_case *c) {
     rel_copy(&rel_own, c->s);
     rel_leave_calls(&rel_own, feeds, 0);
     rel_leave_fields(&rel_own, REL_CELL, shear);
+    rel_leave_framed(&rel_own);
     for (i = rel_own.count - 1; i > 0; i--)
         if (rel_own.op[i].call == REL_MOTION && rel_find(&rel_own.op[i], "function")) rel_drop_ops(&rel_own, i, i + 1);
     return rel_instead(c) && !rel_code_flag(c, 1);
@@ -186,6 +194,9 @@ static int rel_translated(rel_case *c) {
     static const char *const without[] = {"outlet beyond", "push inside", "feed inside", 0};
     rel_map m = rel_same;
     if (!c->ran || rel_has_any(c, without)) return REL_SKIPPED;
+    rel_copy(&rel_own, c->s);
+    rel_leave_framed(&rel_own);
+    if (!rel_instead(c)) return REL_SKIPPED;
     m.to[0] = ldexp(1, -6);
     m.to[1] = -ldexp(1, -7);
     if (!rel_has(c, "planar")) m.to[2] = ldexp(1, -5);
@@ -291,6 +302,57 @@ static void rel_exchange(rel_scene *s, int a, int b) {
             else if ((int)v->v[0] == b) v->v[0] = a;
         }
 }
+/* The plane of element k of a wall: its normal and its distance from the origin; 0: it has no such element. */
+static int rel_wall_plane(const rel_scene *s, const rel_op *wall, int k, double *plane) {
+    const int flat = wall->call == REL_PLANE, per = wall->call == REL_MESH ? 3 : 2;
+    const rel_set *n = flat ? rel_given_in(wall, "normal") : 0, *o = flat ? rel_given_in(wall, "point") : 0, *v, *t;
+    double x[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, e[2][3], size = 0;
+    int i, q;
+    for (q = 0; q < 4; q++) plane[q] = 0;
+    for (q = 0; q < 3 && n && !k; q++) { plane[q] = n->v[q]; x[0][q] = o ? o->v[q] : 0; }
+    if (!flat) {
+        if (wall->call != REL_MESH && wall->call != REL_PROFILE) return 0;
+        v = rel_given_in(wall, "vertices");
+        t = rel_given_in(wall, "triangles");
+        if (!v || !t || per*k >= t->count) return 0;
+        for (i = 0; i < per; i++)
+            for (q = 0; q < per; q++) x[i][q] = s->pool[v->at + per*(int)s->pool[t->at + per*k + i] + q];
+        if (per == 2) { x[2][0] = x[0][0]; x[2][1] = x[0][1]; x[2][2] = 1; }
+        for (q = 0; q < 3; q++) { e[0][q] = x[1][q] - x[0][q]; e[1][q] = x[2][q] - x[0][q]; }
+        for (q = 0; q < 3; q++) plane[q] = e[0][(q + 1)%3]*e[1][(q + 2)%3] - e[0][(q + 2)%3]*e[1][(q + 1)%3];
+    }
+    for (q = 0; q < 3; q++) size += plane[q]*plane[q];
+    for (q = 0; q < 3 && size > 0; q++) plane[3] += (plane[q] /= sqrt(size))*x[0][q];
+    return size > 0;
+}
+static int rel_wall_is_moved(const rel_scene *s, int wall) {
+    int i;
+    for (i = 0; i < s->count; i++) {
+        const rel_set *of = rel_moves_wall(s->op[i].call) ? rel_given_in(&s->op[i], "wall") : 0;
+        if (of && (int)of->v[0] == wall) return 1;
+    }
+    return 0;
+}
+/* "Where two such surfaces coincide, only the wall that was added first acts" (docs/theory_surfaces.md, of surfaces
+   that move against each other; of planes and facets at rest it says the same). Do elements of two walls, of which one
+   moves or has another material, lie in the same plane? */
+static int rel_walls_coincide(const rel_scene *s, int a, int b) {
+    const rel_set *one, *other;
+    double p[4], q[4];
+    int i, k, e;
+    if (!rel_wall_plane(s, &s->op[a], 0, p) || !rel_wall_plane(s, &s->op[b], 0, q)) return 0;
+    one = rel_given_in(&s->op[a], "material");
+    other = rel_given_in(&s->op[b], "material");
+    if (!rel_wall_is_moved(s, a) && !rel_wall_is_moved(s, b) && one && other && (int)one->v[0] == (int)other->v[0])
+        return 0;
+    for (i = 0; rel_wall_plane(s, &s->op[a], i, p); i++)
+        for (k = 0; rel_wall_plane(s, &s->op[b], k, q); k++) {
+            const double way = p[0]*q[0] + p[1]*q[1] + p[2]*q[2] < 0 ? -1 : 1;
+            for (e = 0; e < 4 && fabs(p[e] - way*q[e]) < 1e-9; e++) continue;
+            if (e == 4) return 1;
+        }
+    return 0;
+}
 /* Feeds draw places in the order of the bodies that are there. */
 static int rel_order(rel_case *c, int walls) {
     static const int feeds[] = {REL_FEED, REL_FEED_SIZES, REL_FILL, REL_FILL_SHAPE, -1};
@@ -307,6 +369,8 @@ static int rel_order(rel_case *c, int walls) {
     for (i = 0; i < c->s->count && !(walls && rel_moves_wall(c->s->op[i].call)); i++)
         if (walls ? rel_is_wall(c->s->op[i].call) && !c->s->op[i].step : c->s->op[i].call == REL_A_BODY) at[n++] = i;
     if (n < 2) return REL_SKIPPED;
+    for (i = 0; i < n && walls; i++)
+        for (k = 0; k < i; k++) if (rel_walls_coincide(c->s, at[i], at[k])) return REL_SKIPPED;
     for (i = 0; i < n/2; i++) rel_exchange(&rel_image, at[i], at[n - 1 - i]);
     if (walls) return rel_near(c, &rel_image, &how, &rel_same, "walls in another order");
     ran = c->other_ran = rel_go(&other, &rel_image, &how);

@@ -120,9 +120,10 @@ static int rel_fewer_items(rel_shrinking *h) {
 }
 /* Rounds the numbers `from` to `to` - 1 of a set. Returns 0 if this changes nothing. */
 static int rel_round(rel_op *op, int j, int from, int to, int digits) {
-    const int down = op->call == REL_WORLD && !strcmp(rel_field_at(op, j)->name, "d.dt");
+    const char *name = rel_field_at(op, j)->name;
+    const int down = op->call == REL_WORLD && !strcmp(name, "d.dt");
     int n, k, changed = 0;
-    if (down && !digits) return 0;
+    if (!digits && op->call == REL_WORLD && (down || !strcmp(name, "d.tolerance"))) return 0;
     double *x = rel_numbers_of(&rel_smaller, op, &op->set[j], &n);
     for (k = from; k < n && k < to; k++) {
         const double y = x[k] < 0 || x[k] > 0 ? rel_rounder(x[k], digits, down) : 0;
