@@ -643,16 +643,21 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
     }
     for (i = 0; i < n; i++) if (demi_kept_later(&c[i])) c[i].send = c[i - c[i].corners].send;
 }
-/* True if the point of c on its wall lies on another surface too. first, last: the candidates of
-   the body in work group d. Planes, cylinders and surfaces of facets can cover others. */
+/* True if the point of c on its wall lies on a surface, such as another one. first, last: the
+   candidates of the body in work group d; level: only facets across the normal count. Planes,
+   cylinders and surfaces of facets can cover others. */
 static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, const demi_kept *c,
-                             int surface) {
+                             int surface, int level) {
     const demi_wall *wall = demi_surface_of(w, surface);
+    const dem_vec3 n = demi_unrotate(wall->pose.rotation, c->normal);
     const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
     int k;
     if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH) || wall->step[0].x > 0) return 0;
     for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
         const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
+        if (level && w->wall_id[k] == surface && demi_faceted(wall) &&
+            !(DEMI_ABS(demi_dot(demi_at(wall->planes + 4*w->wall_element[k]), n)) >
+              DEM_R(DEMI_FLUSH))) continue;
         if (w->wall_id[k] == surface && DEMI_ABS(demi_wall_distance(wall, w->wall_element[k],
             demi_unrotate(wall->pose.rotation, demi_sub(at, wall->pose.position)), close)) < close)
             return 1;
@@ -678,22 +683,27 @@ DEM_INLINE int demi_kept_several(const dem_world *w, const int32_t *wall, int co
 }
 /* Removes contacts at edges of surfaces that move against each other and abut, such as belts in a
    floor: where the point of a contact lies on another surface that the body touches too, that
-   surface covers the edge. Of contacts that lie on each other's surface the first remains. walled:
-   the first contact of the body with walls. */
+   surface covers the edge. Of contacts that lie on each other's surface, one on a face covers one
+   on an edge; of two on faces or on edges the first remains. walled: the first contact of the body
+   with walls. */
 static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled) {
     demi_kept *c = w->kept_next + w->kept_first[d];
     const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, left = walled;
     for (i = walled; i < all; i++) {
         const int own = demi_kept_surface(w, &c[i]);
-        int covered = 0;
+        int covered = 0, level;
         if (demi_kept_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
         for (k = walled; k < all && !covered; k++) {
             const int other = demi_kept_surface(w, &c[k]);
             if (other == own || c[k].part_a != c[i].part_a || c[k].a < 0) continue;
-            covered = demi_kept_lies_on(w, d, first, last, &c[i], other) &&
-                (k < i || demi_kept_flush(w, &c[k]) ||
-                 !demi_kept_lies_on(w, d, first, last, &c[k], own));
+            if (!demi_kept_lies_on(w, d, first, last, &c[i], other, 0)) continue;
+            covered = demi_kept_flush(w, &c[k]) ||
+                !demi_kept_lies_on(w, d, first, last, &c[k], own, 0);
+            if (covered) continue;
+            level = demi_kept_lies_on(w, d, first, last, &c[i], own, 1);
+            covered = level == demi_kept_lies_on(w, d, first, last, &c[k], other, 1)
+                ? k < i : !level;
         }
         if (covered) c[i].a = -1;               /* it leaves the list below */
     }

@@ -1068,6 +1068,25 @@ int main(int argc, char **argv) {
             soup_free(&b);
         }
     }
+    TEST("the edge of a wall that ends at a plane is not felt above it, whichever of the two was added first") {
+        int first;
+        for (first = 0; first < 2; first++) {   /* the plane, or the fence below it */
+            rail q = rail_begin(1);
+            soup fence = soup_of(2);
+            dem_wall wall = {0};
+            dem_wall_loads loads;
+            segment(&fence, 0, 0, 0, -2);
+            if (first) wall = soup_add(q.world, q.material, &fence);
+            dem_wall_plane_add(q.world, q.material, at(0, 0, 0), at(0, 1, 0));
+            if (!first) wall = soup_add(q.world, q.material, &fence);
+            q.body = dem_sphere_add(q.world, q.material, 1, at(0, 50, 0));
+            CHECK_NEAR(rail_at(&q, at(0, DEM_R(0.99), 0)).y, 0.01, 1e-6);
+            dem_wall_loads_get(q.world, wall, &loads);
+            CHECK_NEAR(size_of(loads.force), 0, 0);
+            dem_world_destroy(q.world);
+            soup_free(&fence);
+        }
+    }
     TEST("friction carries over the seam of two walls: a ball sticks, slides or rolls across it as on a plane") {
         int kind, way;
         for (way = 0; way < 3; way++) {         /* held; slides; rolls */
