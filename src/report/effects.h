@@ -228,7 +228,9 @@ static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
     if (w->bodies.shaped) return demi_look_off(e, "included in shapes");
-    if (!w->bodies.orienting) return demi_look_off(e, "desc.orientations is 0");
+    if (!w->desc.orientations) return demi_look_off(e, "desc.orientations is 0");
+    if (w->shape_count) return demi_look_off(e, "grains of a shape may come");
+    if (w->joint_count) return demi_look_off(e, "joints turn with bodies");
     return demi_say(e, 1, "followed because desc.orientations is 1; no force depends on them");
 }
 static dem_effect_state demi_look_ledger(const dem_world *w, dem_effect *e) {

@@ -84,6 +84,41 @@ int main(int argc, char **argv) {
         CHECK_EQ(effects_of(world, "contacts").state, DEM_EFFECT_IDLE);
         dem_world_destroy(world);
     }
+    TEST("the cost of orientations is not measured where a feed adds shapes, or where a joint turns with spheres") {
+        int joint;
+        for (joint = 0; joint < 2; joint++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material glass;
+            dem_effect all[DEM_EFFECTS];
+            dem_feed_desc d = DEM_FEED_DESC;
+            dem_joint_desc j = DEM_JOINT_DESC;
+            desc.orientations = 1;
+            desc.dt = DEM_R(1e-6);
+            desc.response = joint ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+            world = dem_world_create(&desc);
+            glass = scene_material(world, 1e7, 0.5, 0, 0);
+            j.a = dem_sphere_add(world, glass, DEM_R(1e-3), at(0, 0, 0));
+            j.b = dem_sphere_add(world, glass, DEM_R(1e-3), at(3e-3, 0, 0));
+            j.point = at(1.5e-3, 0, 0);
+            j.kind = DEM_JOINT_POINT;
+            d.material = glass;
+            d.class_count = 1;
+            d.amount[0] = 1;
+            d.radius[0] = DEM_R(1e-3);
+            d.box = box_of(0.01, 0, 0, 0.1, 0.1, 0.1);
+            if (joint) CHECK(dem_joint_add(world, &j).id);
+            else {
+                d.shapes[0] = dem_shape_ellipsoid_add(world, at(1e-3, 1e-3, 5e-4));
+                d.rate = 1e6;
+                CHECK(dem_feed_add(world, &d).id);
+            }
+            CHECK_EQ(dem_effects_get(world, 1e-3, all), DEM_EFFECTS);
+            CHECK_EQ(effects_of(world, "orientations").state, DEM_EFFECT_OFF);
+            CHECK(effects_of(world, "orientations").text[0]);
+            dem_world_destroy(world);
+        }
+    }
     TEST("cohesion under impulses counts as adhesion, and the pair table prints the impulse-only columns") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
