@@ -59,6 +59,7 @@ static void rel_map_scene(rel_scene *to, const rel_scene *from, const rel_map *m
     rel_copy(to, from);
     for (i = 0; i < to->count; i++) {
         rel_op *op = &to->op[i];
+        const rel_set *area = op->call == REL_MOTION || op->call == REL_TABLE ? rel_given_in(op, "area") : 0;
         for (j = 0; j < rel_calls[op->call].field_count; j++) {    /* points and directions at defaults move, too */
             const rel_field *f = &rel_calls[op->call].fields[j];
             const char *defaults = (const char *)rel_calls[op->call].defaults;
@@ -72,7 +73,9 @@ static void rel_map_scene(rel_scene *to, const rel_scene *from, const rel_map *m
         for (j = 0; j < op->count; j++) {
             rel_set *v = &op->set[j];
             const rel_field *f = &rel_calls[op->call].fields[v->field];
-            const double unit = pow(m->length, f->length)*pow(m->mass, f->mass)*pow(m->time, f->time);
+            /* with an area, the load of a servo is a stress (dem_motion.load) */
+            const int stress = (!strcmp(f->name, "d.load") || !strcmp(f->name, "loads")) && area && area->v[0] > 0;
+            const double unit = pow(m->length, f->length - 2*stress)*pow(m->mass, f->mass)*pow(m->time, f->time);
             const int list = f->type == REL_REALS, array = f->type == REL_REAL_ARRAY || f->type == REL_DOUBLE_ARRAY;
             double *x = v->v;
             if (f->nature == REL_AXES) { x[0] = rel_turn_axes(m, (int)x[0]); continue; }
@@ -252,7 +255,8 @@ static int rel_scaled(rel_case *c) {
     rel_copy(&rel_own, c->s);
     law = rel_given_in(&rel_own.op[0], "law");
     /* coefficients are in N/m^(3/2) with Hertz's law and in N/m with the others, whatever the law (dem_contact.kn) */
-    if (law && (int)law->v[0] == rel_code_of("law_plain")) rel_put(&rel_own.op[0], "normal_law", DEM_NORMAL_LINEAR);
+    if (law && ((int)law->v[0] == rel_code_of("law_plain") || (int)law->v[0] == rel_code_of("law_stepped")))
+        rel_put(&rel_own.op[0], "normal_law", DEM_NORMAL_LINEAR);
     if (law && (int)law->v[0] == rel_code_of("law_spring")) rel_put(&rel_own.op[0], "normal_law", DEM_NORMAL_HERTZ);
     if (!rel_instead(c)) return REL_SKIPPED;
     /* square, cube and fourth roots of these are exact */
