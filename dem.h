@@ -24023,16 +24023,21 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
     }
     for (i = 0; i < n; i++) if (demi_kept_later(&c[i])) c[i].send = c[i - c[i].corners].send;
 }
-/* True if the point of c on its wall lies on another surface too. first, last: the candidates of
-   the body in work group d. Planes, cylinders and surfaces of facets can cover others. */
+/* True if the point of c on its wall lies on a surface, such as another one. first, last: the
+   candidates of the body in work group d; level: only facets across the normal count. Planes,
+   cylinders and surfaces of facets can cover others. */
 static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, const demi_kept *c,
-                             int surface) {
+                             int surface, int level) {
     const demi_wall *wall = demi_surface_of(w, surface);
+    const dem_vec3 n = demi_unrotate(wall->pose.rotation, c->normal);
     const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
     int k;
     if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH) || wall->step[0].x > 0) return 0;
     for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
         const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
+        if (level && w->wall_id[k] == surface && demi_faceted(wall) &&
+            !(DEMI_ABS(demi_dot(demi_at(wall->planes + 4*w->wall_element[k]), n)) >
+              DEM_R(DEMI_FLUSH))) continue;
         if (w->wall_id[k] == surface && DEMI_ABS(demi_wall_distance(wall, w->wall_element[k],
             demi_unrotate(wall->pose.rotation, demi_sub(at, wall->pose.position)), close)) < close)
             return 1;
@@ -24058,22 +24063,27 @@ DEM_INLINE int demi_kept_several(const dem_world *w, const int32_t *wall, int co
 }
 /* Removes contacts at edges of surfaces that move against each other and abut, such as belts in a
    floor: where the point of a contact lies on another surface that the body touches too, that
-   surface covers the edge. Of contacts that lie on each other's surface the first remains. walled:
-   the first contact of the body with walls. */
+   surface covers the edge. Of contacts that lie on each other's surface, one on a face covers one
+   on an edge; of two on faces or on edges the first remains. walled: the first contact of the body
+   with walls. */
 static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled) {
     demi_kept *c = w->kept_next + w->kept_first[d];
     const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, left = walled;
     for (i = walled; i < all; i++) {
         const int own = demi_kept_surface(w, &c[i]);
-        int covered = 0;
+        int covered = 0, level;
         if (demi_kept_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
         for (k = walled; k < all && !covered; k++) {
             const int other = demi_kept_surface(w, &c[k]);
             if (other == own || c[k].part_a != c[i].part_a || c[k].a < 0) continue;
-            covered = demi_kept_lies_on(w, d, first, last, &c[i], other) &&
-                (k < i || demi_kept_flush(w, &c[k]) ||
-                 !demi_kept_lies_on(w, d, first, last, &c[k], own));
+            if (!demi_kept_lies_on(w, d, first, last, &c[i], other, 0)) continue;
+            covered = demi_kept_flush(w, &c[k]) ||
+                !demi_kept_lies_on(w, d, first, last, &c[k], own, 0);
+            if (covered) continue;
+            level = demi_kept_lies_on(w, d, first, last, &c[i], own, 1);
+            covered = level == demi_kept_lies_on(w, d, first, last, &c[k], other, 1)
+                ? k < i : !level;
         }
         if (covered) c[i].a = -1;               /* it leaves the list below */
     }
@@ -32031,7 +32041,7 @@ static DEMI_APART void demi_means_add(const dem_world *w, int i) {
 /* True if the field is due for a sample at the present time. */
 static int demi_field_due(const dem_world *w, const demi_field *f) {
     return f->used && w->clock.time >= f->next - 1e-6*(double)w->clock.dt &&
-        !(f->desc.end > 0 && w->clock.time > f->desc.end);
+        !(f->desc.end > 0 && w->clock.time > f->desc.end + 1e-6*(double)w->clock.dt);
 }
 /* The time of the sample after the present one: start plus a multiple of the interval, s. */
 static double demi_field_next(const dem_world *w, const dem_field_desc *d) {
@@ -41977,7 +41987,9 @@ static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
     if (w->bodies.shaped) return demi_look_off(e, "included in shapes");
-    if (!w->bodies.orienting) return demi_look_off(e, "desc.orientations is 0");
+    if (!w->desc.orientations) return demi_look_off(e, "desc.orientations is 0");
+    if (w->shape_count) return demi_look_off(e, "grains of a shape may come");
+    if (w->joint_count) return demi_look_off(e, "joints turn with bodies");
     return demi_say(e, 1, "followed because desc.orientations is 1; no force depends on them");
 }
 static dem_effect_state demi_look_ledger(const dem_world *w, dem_effect *e) {

@@ -10,7 +10,8 @@ static int rel_needed(const rel_op *op, const rel_field *f) {
     if (f->type == REL_PATH || op->call == REL_READ) return 1;
     if (f->type == REL_DATA) return 1;         /* functions read it */
     if (op->call == REL_WORLD)
-        return !strcmp(f->name, "d.dt") || !strcmp(f->name, "d.tolerance") || (rel_given_in(op, "planar") && !strcmp(f->name, "d.thickness")) ||
+        return !strcmp(f->name, "d.dt") || !strcmp(f->name, "d.tolerance") ||
+            (rel_given_in(op, "planar") && !strcmp(f->name, "d.thickness")) ||
             (rel_given_in(op, "law") && (!strncmp(f->name, "d.law_", 6) || !strcmp(f->name, "d.body_reals"))) ||
             (rel_given_in(op, "body_reals_fn") && !strcmp(f->name, "d.body_reals"));
     return op->call == REL_A_BODY && (!strcmp(f->name, "position") || !strcmp(f->name, "velocity"));

@@ -241,5 +241,50 @@ int main(int argc, char **argv) {
         CHECK(s[0].stiffness > 0);
         CHECK(s[1].stiffness == s[0].stiffness && s[1].speed == s[0].speed);
     }
+    TEST("a servo wall counts the contact of a grain once when the grain goes to another slab and is lent back") {
+        double speed[2] = {0, 0}, stiffness[2] = {0, 0};
+        int image, part;
+        for (image = 0; image < 2; image++) {
+            dem_world_desc d = DEM_WORLD_DESC;
+            dem_material_desc m = DEM_MATERIAL_DESC;
+            dem_sieve_desc sieve = DEM_SIEVE_DESC;
+            dem_slabs_desc cut = DEM_SLABS_DESC;
+            dem_motion push = DEM_MOTION;
+            dem_material stuff;
+            dem_wall lid;
+            dem_servo s;
+            dem_body grain;
+            dem_body_state state;
+            dem_world *w;
+            d.dt = DEM_R(1.6e-6);
+            w = dem_world_create(&d);
+            m.density = 2000; m.young = DEM_R(5e6); m.restitution = DEM_R(0.8);
+            stuff = dem_material_add(w, &m);
+            sieve.kind = DEM_SIEVE_SLOTS; sieve.aperture = DEM_R(0.001); sieve.bar = DEM_R(0.0007);
+            dem_wall_sieve_add(w, stuff, &sieve);
+            dem_sphere_add(w, stuff, DEM_R(0.001), at(0, -0.007, 0));
+            grain = dem_sphere_add(w, stuff, DEM_R(0.0012), at(0, -0.004, 0.001));
+            CHECK_EQ(dem_body_get(w, grain, &state), DEM_OK);
+            state.velocity = at(0, 0, 0.1);
+            CHECK_EQ(dem_body_set(w, grain, &state), DEM_OK);
+            lid = dem_wall_plane_add(w, stuff, at(0, 0, 0.0025), at(0, 0, -1));
+            push.kind = DEM_MOTION_SERVO; push.velocity = at(0, 0, -0.5); push.load = 80; push.area = DEM_R(0.0002);
+            CHECK_EQ(dem_wall_motion_set(w, lid, &push), DEM_OK);
+            cut.count = 3; cut.axis = 1;
+            for (part = 0; part < 2; part++) {     /* slabs begin again after 106 steps */
+                dem_slabs *slabs = image ? dem_slabs_create(w, &cut) : 0;
+                const int n = part ? 1 : 106;
+                CHECK_EQ(slabs ? dem_slabs_step(slabs, n) : dem_world_step(w, n), DEM_OK);
+                if (slabs) CHECK_EQ(dem_slabs_collect(slabs, w), DEM_OK);
+                dem_slabs_destroy(slabs);
+            }
+            CHECK_EQ(dem_wall_servo_get(w, lid, &s), DEM_OK);
+            speed[image] = (double)s.speed; stiffness[image] = (double)s.stiffness;
+            dem_world_destroy(w);
+        }
+        CHECK(stiffness[0] > 0);
+        CHECK_NEAR(stiffness[1], stiffness[0], 1e-6*stiffness[0]);
+        CHECK_NEAR(speed[1], speed[0], 1e-6*fabs(speed[0]));
+    }
     return test_end();
 }
