@@ -30845,7 +30845,9 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
             demi_stiffness s;
-            if (c->b >= 0 || !demi_walls_alike(&walls[c->wall], &walls[of]) ||
+            /* a body that has changed slab has left its contacts there until forces are computed */
+            if (c->b >= 0 || demi_is_ghost(w, c->a) ||
+                !demi_walls_alike(&walls[c->wall], &walls[of]) ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
             demi_kept_coefs(w, c, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);

@@ -195,7 +195,8 @@ static int rel_periods(rel_case *c) {
     box = rel_find(&rel_image.op[0], "domain");
     if (!sides || !box) return REL_SKIPPED;
     for (i = 0; i < rel_image.count; i++) {
-        const int body = rel_image.op[i].call == REL_A_BODY && !rel_rides(c->s, i), feed = rel_image.op[i].call == REL_FEED;
+        const int body = rel_image.op[i].call == REL_A_BODY && !rel_rides(c->s, i),
+            feed = rel_image.op[i].call == REL_FEED;
         rel_set *x = body ? rel_find(&rel_image.op[i], "position") : feed ? rel_find(&rel_image.op[i], "box") : 0;
         for (k = 0; x && k < (feed ? 6 : 3); k++)
             if ((int)sides->v[k%3] == DEM_BOUNDARY_PERIODIC) x->v[k] += 2*(box->v[3 + k%3] - box->v[k%3]);
