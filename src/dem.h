@@ -21,14 +21,16 @@
        >>run               running it: the time step, runs, trials, contacts, measuring
        >>record            files, replays, checkpoints, outputs, slabs, effects, the report
      >>implementation - private code from here on; users need not read it
+   Volume I, what a step does:
      core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
        >>printing          text with a decimal point in every locale
        >>maths             vectors, poses, random numbers
        >>layout            data structures: lists, contacts, walls, feeds, joints
-       >>state             the state of a world
+       >>state             the state of a world, and short questions about it
        >>memory            arrays of each body, errors, allocation
        >>rows              a row for each field of a desc: its limits and what is done with it
+       >>team              the worlds that step together: a single world, or slabs
      law/ - contact laws and materials
        >>laws              table of the built-in contact laws and their coefficients
        >>materials         materials, the pair table, damping from restitution
@@ -45,9 +47,8 @@
      surface/ - walls
        >>facets            weights of the faces, edges and corners of a surface
        >>sheets            connected facets of a surface, their orientation and open edges
-       >>motions           poses of moving walls: rotation, oscillation, tables of poses
+       >>motions           poses of moving walls: rotation, oscillation, tables of poses; belts
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
-       >>belts             surfaces that move in themselves, such as belts
        >>joins             facets of walls that move together: doubles, covers, dividing
        >>coarsen           facets in one plane merged to fewer
        >>tessellate        curved walls and sieves as surfaces of facets
@@ -87,20 +88,24 @@
        >>placing           room for new grains: regions, random fills, packings
        >>groups            named sets of bodies, selections
        >>feed              feeds and outlets
-     run/ - the step and what is measured in it
-       >>team              the worlds that step together: a single world, or slabs
-       >>advice            the time step: what is chosen and what is too large
+     drive/ - what is led from outside while a scene runs
        >>steering          new motions and belt speeds of walls, and the forces that follow
        >>servo             walls led to a target load
        >>rails             bodies with locked axes and prescribed velocities
        >>growth            bodies that change their size
+     run/ - the time step, the step, runs; a world begins and ends
+       >>advice            the time step: what is chosen and what is too large
+       >>ahead             half a step ahead, where impulses act
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
+       >>stress            cells led to a strain or stress; stress and fabric of the whole
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>events            contacts from beginning to end; spectra of impacts; wear
-       >>stress            cells led to a strain or stress; stress and fabric of the whole
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
+       >>world             creating and destroying a world
+     >>services - volume II: what reads a world, writes it, shares it out; no step calls it
+     measure/ - what a world is like
        >>measure           counters, contacts, angle of repose, the digest
        >>mixing            mixing and segregation of two components
      file/ - reading and writing
@@ -120,7 +125,7 @@
        >>check             likely mistakes in a scene, found before it runs
        >>trials            cost and accuracy of other choices, tried on copies of a scene
        >>effects           which effects are active, which never happened, what each costs
-       >>world             creating and destroying a world; the report
+       >>report            the choices made, the effects in use, what happened
      slab/ - one scene on several threads or processes
        >>slabs             one scene on several threads or processes: data and messages
        >>slabs-step        one step of all slabs
@@ -205,6 +210,7 @@
 #include "core/state.h"
 #include "core/memory.h"
 #include "core/rows.h"
+#include "core/team.h"
 #include "law/laws.h"
 #include "law/materials.h"
 #include "body/shapes.h"
@@ -220,7 +226,6 @@
 #include "surface/sheets.h"
 #include "surface/motions.h"
 #include "surface/walls.h"
-#include "surface/belts.h"
 #include "surface/joins.h"
 #include "surface/coarsen.h"
 #include "surface/tessellate.h"
@@ -256,21 +261,27 @@
 #include "scene/placing.h"
 #include "scene/groups.h"
 #include "scene/feed.h"
-#include "run/team.h"
+#include "drive/steering.h"
+#include "drive/servo.h"
+#include "drive/rails.h"
+#include "drive/growth.h"
 #include "run/advice.h"
-#include "run/steering.h"
-#include "run/servo.h"
-#include "run/rails.h"
-#include "run/growth.h"
+#include "run/ahead.h"
 #include "run/ledger.h"
 #include "run/responses.h"
+#include "run/stress.h"
 #include "run/fields.h"
 #include "run/events.h"
-#include "run/stress.h"
 #include "run/step.h"
 #include "run/runs.h"
-#include "run/measure.h"
-#include "run/mixing.h"
+#include "run/world.h"
+
+/* ================================================================================================
+   >>services - volume II: what reads a world, writes it to files or shares it out. No part above
+   this line calls one below.
+   ============================================================================================== */
+#include "measure/measure.h"
+#include "measure/mixing.h"
 #include "file/outlines.h"
 #include "file/read.h"
 #include "file/decompose.h"
@@ -286,7 +297,7 @@
 #include "report/check.h"
 #include "report/trials.h"
 #include "report/effects.h"
-#include "report/world.h"
+#include "report/report.h"
 #include "slab/slabs.h"
 #include "slab/slabs-step.h"
 #include "slab/slabs-run.h"

@@ -591,3 +591,5 @@ static void demi_finish(dem_world *w) {
     demi_domains_do(w, demi_domain_finish);
     w->stage.synced = 1;
 }
+/* The same as a task for demi_all. */
+static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_OK; }

@@ -483,11 +483,3 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
     *gap = demi_rows_at(&m.t.rows.gap, 0);
     return 1;
 }
-
-/* Sets the force loop for the laws in force. Returns its name in reports. */
-static const char *demi_kernel_choose(dem_world *w) {
-    w->kernel = w->effects.clustered ? demi_pairs_members
-        : w->events.n.on ? demi_pairs_noted : demi_pairs;
-    if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
-    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
-}

@@ -475,7 +475,7 @@ typedef struct demi_wall {
     dem_pose ahead, was;           /* impulses: one step ahead, see demi_ahead; one step ago */
     dem_motion motion;
     dem_vec3 glide;                /* m/s, velocity of its surface, in its frame; >>steering sets
-                                      it, >>belts uses it */
+                                      it, >>motions uses it */
     int glides;                    /* 1: that is not 0 */
     int idle;                      /* 1: its motion has not begun and leaves it where it was set */
     dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */

@@ -4,45 +4,6 @@
    checks at the start of every public function, error messages, allocation and growing arrays. All
    memory of a world is allocated and freed here.
    --------------------------------------------------------------------------------------------- */
-/* Returns the largest gap, m, of a candidate: the skin and the range of the law. */
-DEM_INLINE dem_real demi_cover(const dem_world *w) {
-    return (dem_real)(w->margin.skin + w->margin.reach);
-}
-/* True if the response in force (springs or impulses) has this trait. */
-DEM_INLINE int demi_response_is(const dem_world *w, int trait) {
-    return (demi_response_kinds[w->desc.response].traits & trait) != 0;
-}
-/* True if margin.reach follows from the speeds, as with impulses and no law_range. Then no check
-   may reject a scene because of it. */
-DEM_INLINE int demi_reach_free(const dem_world *w) {
-    return demi_response_is(w, DEMI_FORESEEN) && !(w->desc.law_range > 0);
-}
-/* The spheres of entry `at` of the pruned neighbour list, which may be members of clusters: side 0
-   of body a, 1 of body b. Centre as seen from that of the body, m, and radius, m. */
-DEM_INLINE dem_vec3 demi_near_arm(const dem_world *w, size_t at, int side) {
-    const int32_t *ball = side ? w->near.ball_b : w->near.ball_a;
-    return w->effects.clustered ? demi_at(w->bodies.centre + 4*ball[at]) : demi_v(0, 0, 0);
-}
-DEM_INLINE dem_real demi_near_radius(const dem_world *w, size_t at, int side) {
-    const int32_t *ball = side ? w->near.ball_b : w->near.ball_a;
-    return w->effects.clustered ? w->bodies.centre[4*ball[at] + 3]
-        : w->bodies.pos[4*(side ? w->near.b : w->near.a)[at] + 3];
-}
-/* Vector, m, from the centre of a body to the image of the other in entry `at`; and that from the
-   centre of sphere a to the image of sphere b. */
-DEM_INLINE dem_vec3 demi_near_bodies_way(const dem_world *w, size_t at) {
-    const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
-    return demi_add(demi_sub(demi_at(y), demi_at(x)), demi_at(w->image_shift + w->near.image[at]));
-}
-DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
-    const dem_vec3 way = demi_near_bodies_way(w, at);
-    return w->effects.clustered
-        ? demi_add(way, demi_sub(demi_near_arm(w, at, 1), demi_near_arm(w, at, 0))) : way;
-}
-/* True if the law may write rates of the user-defined numbers of bodies. */
-DEM_INLINE int demi_exchanges(const dem_world *w) {
-    return w->bodies.real_count > 0 && w->desc.law_who;
-}
 /* Returns word k of a list of names, such as body_reals, and its length; null if there is none. */
 static const char *demi_name(const char *names, int k, int *length) {
     const char *at = names ? names : "";
@@ -87,13 +48,6 @@ static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
     demi_names_copy(desc->law_memory_names, w->memory_names);
     demi_names_point(w);
 }
-/* Returns the gap, m, below which the law is called. `radii`: sum of both radii; with a wall, the
-   radius of the body. 0: the law is called only in contact. */
-DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
-    if (demi_reach_free(w)) return (dem_real)w->margin.reach;
-    return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
-}
-
 /* --- arrays with a value for each body. Loops over these rows (>>bodies) allocate, add, remove,
        sort, check, save and send them to other slabs.
 

@@ -228,3 +228,18 @@ static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_c
     }
     if (slides) memory[laws->at_sliding] = f->sliding;
 }
+/* A contact linearized about an overlap, for small motions. Stiffness: normal and tangential, N/m,
+   rolling, N m. Damping: likewise, N s/m and N m s. */
+typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
+/* Returns k and c of the built-in normal law at an overlap, m, during loading; the rest is 0. */
+static demi_stiffness demi_stiffness_normal(const dem_world *w, const dem_real *coef,
+                                            double overlap) {
+    demi_stiffness s = {0, 0, 0, 0, 0, 0};
+    s.k = (double)coef[DEMI_KN];
+    s.c = (double)coef[DEMI_CN];
+    if (demi_normal_is(w, DEMI_HERTZIAN)) {
+        s.k *= 1.5*sqrt(overlap);
+        s.c *= sqrt(sqrt(overlap));
+    }
+    return s;
+}

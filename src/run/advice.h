@@ -7,36 +7,6 @@
    press_whole, pressed). Reads everything else. A head (h) considers all members of its team.
    --------------------------------------------------------------------------------------------- */
 
-/* Returns the largest speed of a wall during its motion, m/s, also before the motion has begun. For
-   a user-defined motion: its present speed. A table is sampled eight times per row. */
-static double demi_pose_speed(const demi_wall *wall) {
-    const dem_motion *m = &wall->motion;
-    dem_pose p = wall->pose;
-    switch (m->kind) {
-    case DEM_MOTION_FIXED: return 0;
-    case DEM_MOTION_TRANSLATING: case DEM_MOTION_SERVO: return (double)demi_length(m->velocity);
-    case DEM_MOTION_ROTATING:
-        p.spin = demi_scale(demi_unit(m->axis), m->speed);
-        p.velocity = demi_cross(p.spin, demi_sub(p.position, m->point));
-        return demi_pose_pace(wall, &p);
-    case DEM_MOTION_OSCILLATING:
-        return (2*DEMI_PI*fabs((double)m->frequency) + (m->ramp > 0 ? 1.5/m->ramp : 0))*
-               fabs((double)m->amplitude);
-    case DEM_MOTION_TABLE: {
-        const double end = m->table[m->table_count - 1].time;
-        const int looks = 8*m->table_count;
-        double most = 0;
-        int k;
-        for (k = 0; k <= looks; k++) {
-            demi_wall_pose_at(0, wall, m->start + end*k/looks, &p);
-            most = DEMI_MAX(most, demi_pose_pace(wall, &p));
-        }
-        return most;
-    }
-    default: break;
-    }
-    return demi_pose_pace(wall, &p);
-}
 /* Returns the largest speed of a wall's surface during its motion, m/s. */
 static double demi_motion_speed(const demi_wall *wall) {
     return demi_pose_speed(wall) + (double)demi_length(wall->glide);
@@ -65,21 +35,6 @@ static double demi_advise_radius(const dem_world *w, int body) {
    about the same.) */
 static double demi_dt_stable(double omega2, double rate) {
     return 2/(rate + sqrt(rate*rate + omega2) + 1e-300);
-}
-/* A contact linearized about an overlap, for small motions. Stiffness: normal and tangential, N/m,
-   rolling, N m. Damping: likewise, N s/m and N m s. */
-typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
-/* Returns k and c of the built-in normal law at an overlap, m, during loading; the rest is 0. */
-static demi_stiffness demi_stiffness_normal(const dem_world *w, const dem_real *coef,
-                                            double overlap) {
-    demi_stiffness s = {0, 0, 0, 0, 0, 0};
-    s.k = (double)coef[DEMI_KN];
-    s.c = (double)coef[DEMI_CN];
-    if (demi_normal_is(w, DEMI_HERTZIAN)) {
-        s.k *= 1.5*sqrt(overlap);
-        s.c *= sqrt(sqrt(overlap));
-    }
-    return s;
 }
 /* Returns the derivatives of a contact's force with respect to displacement and velocity at an
    overlap (m); the stability of a step depends on them. A user-defined law: desc.law_stiffness. */

@@ -272,3 +272,45 @@ static double demi_wall_speed(const demi_wall *wall) {
     if (wall->extent < 0 && demi_length(p->spin) > 0) return -1;   /* infinite: search every step */
     return wall->extent < 0 ? (double)demi_length(p->velocity) : demi_pose_pace(wall, p);
 }
+/* Surfaces that move in themselves, such as belts: the wall stays, or follows its motion, and its
+   surface has a velocity of its own. At a contact the surface moves with the part of it across the
+   contact normal n: g - n (n.g). This part is continuous where a contact goes round a rim or a
+   corner, and 0 where n is along g. A velocity along n would do work against the elastic force
+   although the place of the surface, and with it the elastic energy, does not change: that creates
+   energy. `glide` and `glides` of walls hold the velocity; >>steering sets them. */
+/* Returns the velocity of the surface of a wall in this pose at a contact with normal n, m/s,
+   without that of the pose. */
+DEM_INLINE dem_vec3 demi_glide_at(const demi_wall *wall, const dem_pose *pose, dem_vec3 n) {
+    const dem_vec3 g = demi_rotate(pose->rotation, wall->glide);
+    return demi_sub(g, demi_scale(n, demi_dot(g, n)));
+}
+/* Returns the largest speed of a wall during its motion, m/s, also before the motion has begun. For
+   a user-defined motion: its present speed. A table is sampled eight times per row. */
+static double demi_pose_speed(const demi_wall *wall) {
+    const dem_motion *m = &wall->motion;
+    dem_pose p = wall->pose;
+    switch (m->kind) {
+    case DEM_MOTION_FIXED: return 0;
+    case DEM_MOTION_TRANSLATING: case DEM_MOTION_SERVO: return (double)demi_length(m->velocity);
+    case DEM_MOTION_ROTATING:
+        p.spin = demi_scale(demi_unit(m->axis), m->speed);
+        p.velocity = demi_cross(p.spin, demi_sub(p.position, m->point));
+        return demi_pose_pace(wall, &p);
+    case DEM_MOTION_OSCILLATING:
+        return (2*DEMI_PI*fabs((double)m->frequency) + (m->ramp > 0 ? 1.5/m->ramp : 0))*
+               fabs((double)m->amplitude);
+    case DEM_MOTION_TABLE: {
+        const double end = m->table[m->table_count - 1].time;
+        const int looks = 8*m->table_count;
+        double most = 0;
+        int k;
+        for (k = 0; k <= looks; k++) {
+            demi_wall_pose_at(0, wall, m->start + end*k/looks, &p);
+            most = DEMI_MAX(most, demi_pose_pace(wall, &p));
+        }
+        return most;
+    }
+    default: break;
+    }
+    return demi_pose_pace(wall, &p);
+}

@@ -788,14 +788,6 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     *next = laid;
     return DEM_OK;
 }
-DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
-    if (demi_null_look(world, __func__, pose, "pose")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, __func__, id);
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    *pose = world->walls[i].pose;
-    return DEM_OK;
-}
-
 /* Deletes the persistent contacts of a wall that is removed, since another wall may get its index.
    Call demi_list_drop first. */
 static void demi_wall_forget(dem_world *w, int wall) {

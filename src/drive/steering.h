@@ -69,6 +69,15 @@ static void demi_wall_after(dem_world *w, int wall) {
     if (w->stage.forces_valid) demi_steer(w, wall, 1);
 }
 
+DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
+                                                 dem_vec3 *velocity) {
+    int i;
+    if (demi_null_look(world, __func__, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *velocity = demi_rotate(world->walls[i].pose.rotation, world->walls[i].glide);
+    return DEM_OK;
+}
 DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, __func__, id);
@@ -92,6 +101,13 @@ DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_
     return DEM_OK;
 }
 
+DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
+    if (demi_null_look(world, __func__, pose, "pose")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, __func__, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *pose = world->walls[i].pose;
+    return DEM_OK;
+}
 /* True if the time step stays right for a wall with a new motion: the wall is not faster than the
    impacts for which the step was chosen, and moves by less than a tenth of the smallest radius in a
    step. */

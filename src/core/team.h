@@ -39,8 +39,6 @@ static void demi_dt_share(dem_world *h) {
         w->stage.dt_valid = h->stage.dt_valid;
     }
 }
-/* Completes the half kick that the last step left open (demi_finish), as a task for demi_all. */
-static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_OK; }
 
 /* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
    scene, or if another program keeps a core busy, since each parallel loop then waits for the
