@@ -21,14 +21,17 @@
        >>run               running it: the time step, runs, trials, contacts, measuring
        >>record            files, replays, checkpoints, outputs, slabs, effects, the report
      >>implementation - private code from here on; users need not read it
+   Volume I, what a step does:
      core/ - what everything else stands on
        >>platform          compilers, OpenMP, the parallel loop
        >>printing          text with a decimal point in every locale
        >>maths             vectors, poses, random numbers
        >>layout            data structures: lists, contacts, walls, feeds, joints
-       >>state             the state of a world
+       >>state             the state of a world, and short questions about it
        >>memory            arrays of each body, errors, allocation
        >>rows              a row for each field of a desc: its limits and what is done with it
+       >>stream            bytes that are written, read, counted or hashed
+       >>team              the worlds that step together: a single world, or slabs
      law/ - contact laws and materials
        >>laws              table of the built-in contact laws and their coefficients
        >>materials         materials, the pair table, damping from restitution
@@ -45,9 +48,8 @@
      surface/ - walls
        >>facets            weights of the faces, edges and corners of a surface
        >>sheets            connected facets of a surface, their orientation and open edges
-       >>motions           poses of moving walls: rotation, oscillation, tables of poses
+       >>motions           poses of moving walls: rotation, oscillation, tables of poses; belts
        >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
-       >>belts             surfaces that move in themselves, such as belts
        >>joins             facets of walls that move together: doubles, covers, dividing
        >>coarsen           facets in one plane merged to fewer
        >>tessellate        curved walls and sieves as surfaces of facets
@@ -87,22 +89,28 @@
        >>placing           room for new grains: regions, random fills, packings
        >>groups            named sets of bodies, selections
        >>feed              feeds and outlets
-     run/ - the step and what is measured in it
-       >>team              the worlds that step together: a single world, or slabs
-       >>advice            the time step: what is chosen and what is too large
+     drive/ - what is led from outside while a scene runs
        >>steering          new motions and belt speeds of walls, and the forces that follow
        >>servo             walls led to a target load
        >>rails             bodies with locked axes and prescribed velocities
        >>growth            bodies that change their size
+     run/ - the time step, the step, runs; a world begins and ends
+       >>advice            the time step: what is chosen and what is too large
+       >>ahead             half a step ahead, where impulses act
        >>ledger            account of energy
        >>responses         table of responses: what springs and impulses do
+       >>stress            cells led to a strain or stress; stress and fabric of the whole
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>events            contacts from beginning to end; spectra of impacts; wear
-       >>stress            cells led to a strain or stress; stress and fabric of the whole
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
+       >>world             creating and destroying a world
+     >>services - volume II: what reads a world, writes it, shares it out; no step calls it
+     measure/ - what a world is like
        >>measure           counters, contacts, angle of repose, the digest
+       >>parts             the scene as rows of fields: what checkpoints and slabs compare
        >>mixing            mixing and segregation of two components
+       >>impacts           spectra of impact energies, wear
      file/ - reading and writing
        >>outlines          polygons with many corners cut into triangles
        >>read              reading meshes and profiles
@@ -111,7 +119,6 @@
        >>read-grains       reading grains: text, CSV, XYZ, dumps, VTK, VTP
        >>write             writing VTP, VTK, XYZ and CSV
        >>tables            tables of bodies, contacts, fields and residence times (CSV)
-       >>impacts           spectra of impact energies and wear, as numbers and CSV
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
        >>changed           reading a checkpoint into a world that differs
@@ -120,7 +127,7 @@
        >>check             likely mistakes in a scene, found before it runs
        >>trials            cost and accuracy of other choices, tried on copies of a scene
        >>effects           which effects are active, which never happened, what each costs
-       >>world             creating and destroying a world; the report
+       >>report            the choices made, the effects in use, what happened
      slab/ - one scene on several threads or processes
        >>slabs             one scene on several threads or processes: data and messages
        >>slabs-step        one step of all slabs
@@ -516,6 +523,19 @@
                             slower unless compiled for AVX2, same bits
        DEM_DOMAIN_BODIES    approximate number of spheres per work group (2048); changes the bits
 
+   Switches leave out what a program does not need: less code, a shorter compilation, the same bits.
+   A function that is switched off is not declared, so its use is a compile error with its name. No
+   struct changes, so files compiled with different switches may be linked.
+
+       DEM_NO_FILES         reading and writing of files, checkpoints, outputs; no replays and no
+                            trials either
+       DEM_NO_REPLAY        replays in a browser
+       DEM_NO_REPORTS       dem_world_check, dem_effects_get, dem_world_report; no trials either
+       DEM_NO_TRIALS        dem_trials_run, and the costs of effects
+       DEM_NO_SLABS         one scene on several threads or processes as slabs
+       DEM_NO_IMPULSES      rigid grains: dem_world_create refuses DEM_RESPONSE_IMPULSES; no joints
+       DEM_CORE             all of these
+
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
    (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh
    format (>>add-format), effect in the report (>>add-effect), array with a value for each body
@@ -658,6 +678,21 @@ typedef DEM_REAL dem_real;
 #define DEM_ZERO {}
 #else
 #define DEM_ZERO {0}
+#endif
+
+/* Switches: what a program does not need may be left out of it (manual, 14). A function that is
+   switched off is not declared. No struct changes, so files with other switches may be linked. */
+#ifdef DEM_CORE
+#define DEM_NO_FILES
+#define DEM_NO_REPORTS
+#define DEM_NO_SLABS
+#define DEM_NO_IMPULSES
+#endif
+#if defined(DEM_NO_FILES) && !defined(DEM_NO_REPLAY)
+#define DEM_NO_REPLAY                   /* writes a file */
+#endif
+#if (defined(DEM_NO_FILES) || defined(DEM_NO_REPORTS)) && !defined(DEM_NO_TRIALS)
+#define DEM_NO_TRIALS                   /* reports on copies, which are made as checkpoints are */
 #endif
 
 #ifdef __cplusplus
@@ -2532,6 +2567,7 @@ typedef struct dem_joint_state {
     double turned;                 /* rad, of a against b about axis since the joint was added */
     double work;                   /* J, of the motor */
 } dem_joint_state;
+#ifndef DEM_NO_IMPULSES
 /* Adds a joint. It is an error if the response is DEM_RESPONSE_SPRINGS, if neither of the two can
    move, or if a sphere is joined without desc.orientations. A joint ends when one of its bodies or
    its wall is removed or leaves; its id is then invalid and is never used again. While both bodies
@@ -2545,6 +2581,7 @@ DEM_API dem_result dem_joint_motor_set(dem_world *world, dem_joint joint, dem_mo
 DEM_API dem_result dem_joint_get(const dem_world *world, dem_joint joint, dem_joint_state *state);
 /* Removes a joint. */
 DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
+#endif /* DEM_NO_IMPULSES */
 
 /* ---- rails ---- */
 /* A rail locks axes of a body: along and about them it does not respond to forces, but moves as
@@ -2717,6 +2754,7 @@ typedef struct dem_advice {
    error if no grain can move, or with DEM_RESPONSE_IMPULSES, where contacts have no duration. */
 DEM_API dem_result dem_step_advice_get(const dem_world *world, dem_advice *advice);
 
+#ifndef DEM_NO_REPORTS
 /* How serious a finding of dem_world_check is. */
 typedef enum dem_severity {
     DEM_SEVERITY_NOTE = 1,     /* possibly not intended */
@@ -2746,6 +2784,7 @@ DEM_API int dem_world_check(dem_world *world, dem_finding *findings, int capacit
 /* Prints the first 16 findings of dem_world_check, one per line (nothing if there are none), and
    returns how many it found. */
 DEM_API int dem_world_check_print(dem_world *world, FILE *out);
+#endif /* DEM_NO_REPORTS */
 
 /* ---- run ---- */
 
@@ -2924,6 +2963,7 @@ typedef struct dem_totals {
 /* Computes the totals in one pass over the bodies. */
 DEM_API dem_totals dem_totals_get(const dem_world *world);
 
+#ifndef DEM_NO_TRIALS
 /* ---- trials: what accuracy costs in your scene ---- */
 
 /* Returns one number by which a world is judged, an observable. Averages over many grains or a long
@@ -3013,6 +3053,7 @@ DEM_API dem_result dem_trials_run(dem_world *world, const dem_trials_desc *desc,
                                   dem_trials *trials);
 /* Prints the trials as a table, and the advice. */
 DEM_API void dem_trials_print(const dem_trials *trials, FILE *out);
+#endif /* DEM_NO_TRIALS */
 
 /* ---- contacts ---- */
 
@@ -3140,9 +3181,11 @@ typedef struct dem_impacts {
    any. An error if contacts are not recorded. */
 DEM_API dem_result dem_impacts_get(dem_world *world, dem_material a, dem_material b,
                                    dem_impacts *impacts);
+#ifndef DEM_NO_FILES
 /* Writes the spectra of all pairs of materials that have touched to a CSV file. A line per bin that
    is not empty: material_a, material_b, from, to (J), impacts, losses (both 1/s), power (W). */
 DEM_API dem_result dem_impacts_csv_write(dem_world *world, const char *path);
+#endif /* DEM_NO_FILES */
 
 /* Wear of a wall since recording began. */
 typedef struct dem_wear {
@@ -3334,6 +3377,7 @@ DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_
    one scene among processors. What a scene contains and what it costs. Errors are as in >>run.
    --------------------------------------------------------------------------------------------- */
 
+#ifndef DEM_NO_FILES
 /* ---- files ---- */
 
 /* Defects of a mesh, as counted on reading. They never stop a run. */
@@ -3514,6 +3558,8 @@ DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const 
 DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet outlet,
                                                   const char *path);
 
+#endif /* DEM_NO_FILES */
+#ifndef DEM_NO_REPLAY
 /* ---- replay: a run in one HTML file ---- */
 
 /* A replay plays in any browser, without network or other files. It shows grains of every shape,
@@ -3571,6 +3617,8 @@ DEM_API dem_result dem_replay_value_set(dem_replay *replay, const char *name, do
    DEM_ERROR_MEMORY. */
 DEM_API dem_result dem_replay_close(dem_replay *replay);
 
+#endif /* DEM_NO_REPLAY */
+#ifndef DEM_NO_FILES
 /* ---- checkpoints ---- */
 
 /* Writes a checkpoint: the whole state, with bodies, walls, contact history, neighbour list,
@@ -3602,6 +3650,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *world, const char *pat
    "dt: 1e-05 there, 2e-05 here", or "". */
 DEM_API const char *dem_checkpoint_changes_get(const dem_world *world);
 
+#endif /* DEM_NO_FILES */
 /* ---- outputs on a schedule ---- */
 
 /* A scheduled output. */
@@ -3655,6 +3704,7 @@ typedef struct dem_output_desc {
 } dem_output_desc;
 static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTPUT_DESC DEM_OUTPUT_DESC_ZERO
+#ifndef DEM_NO_FILES
 /* Adds an output that a run writes automatically, at the steps nearest to start, start + interval
    and so on, in the order in which outputs were added. The first line of a CSV file replaces an
    older file of that name; a file with other columns is an error of the run. If a file cannot be
@@ -3675,6 +3725,8 @@ DEM_API dem_output dem_output_every_add(dem_world *world, dem_output_kind kind, 
    remove it and add another. The function of an output may remove any output, also its own. */
 DEM_API dem_result dem_output_remove(dem_world *world, dem_output output);
 
+#endif /* DEM_NO_FILES */
+#ifndef DEM_NO_SLABS
 /* ---- slabs: one scene on many processors ---- */
 
 /* How slabs in different processes communicate; all zero for a single process. Processes form a
@@ -3756,6 +3808,8 @@ typedef struct dem_slabs_counters {
 /* Returns the counters of slabs. */
 DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *slabs);
 
+#endif /* DEM_NO_SLABS */
+#ifndef DEM_NO_REPORTS
 /* ---- effects: what a scene contains, what has happened, and what each effect costs ---- */
 
 /* The state of an effect. */
@@ -3778,6 +3832,7 @@ typedef struct dem_effect {
 } dem_effect;
 /* Number of effects. */
 enum { DEM_EFFECTS = 19 };
+#ifndef DEM_NO_TRIALS
 /* Writes for every effect whether it is off, idle or active, and returns their number. It finds a
    material with rolling friction on which nothing has rolled, or a wall that nothing has touched.
    It can miss contacts of spheres that begin and end between two neighbour lists. If `budget` (s of
@@ -3790,6 +3845,7 @@ DEM_API int dem_effects_get(dem_world *world, double budget, dem_effect effects[
 /* Prints the effects as lines of text. A share outside -0.1 to 1, or with an error above 0.1, is
    printed as "too noisy". */
 DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
+#endif /* DEM_NO_TRIALS */
 
 /* ---- report ---- */
 
@@ -3798,6 +3854,7 @@ DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
    walls, joints, feeds, outlets, and the ledger. It calls a user-defined force field and
    desc.growth once per body. */
 DEM_API void dem_world_report(const dem_world *world, FILE *out);
+#endif /* DEM_NO_REPORTS */
 
 /* Creates a world if `version` and `real_size` (bytes of dem_real) are those of the implementation,
    and returns null otherwise. Call dem_world_create, which passes both. */
@@ -3869,6 +3926,13 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #undef W
 #undef X
 #undef Y
+/* With a switch, some private functions have no user. */
+#if defined(DEM_NO_FILES) || defined(DEM_NO_REPORTS) || defined(DEM_NO_SLABS) || \
+    defined(DEM_NO_REPLAY) || defined(DEM_NO_IMPULSES) || defined(DEM_NO_TRIALS)
+#define DEMI_LESS
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
 
 /* ---------------------------------------------------------------------------------------------
    >>platform
@@ -4727,10 +4791,17 @@ enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_NORMAL = 11, DEMI_IMPULSE_LOST = 1
 #define DEMI_RESPONSES(X) \
     X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
       demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \
+    DEMI_IMPULSE_RESPONSE(X) \
+    /* the last */
+#ifdef DEM_NO_IMPULSES
+#define DEMI_IMPULSE_RESPONSE(X)
+#define demi_joints_in_force(w) 0
+#else
+#define DEMI_IMPULSE_RESPONSE(X) \
     X("impulses", DEMI_IMPULSE_REALS, 0x383f, DEMI_MIDWAY | DEMI_FORESEEN | DEMI_JOINTED, \
       demi_impulses_settle, demi_impulses_room, 0, demi_impulses, demi_impulses_due, \
-      demi_impulses_info) \
-    /* the last */
+      demi_impulses_info)
+#endif
 typedef struct demi_response_kind {
     const char *name;
     int memory, vectors, traits;
@@ -4797,7 +4868,7 @@ typedef struct demi_wall {
     dem_pose ahead, was;           /* impulses: one step ahead, see demi_ahead; one step ago */
     dem_motion motion;
     dem_vec3 glide;                /* m/s, velocity of its surface, in its frame; >>steering sets
-                                      it, >>belts uses it */
+                                      it, >>motions uses it */
     int glides;                    /* 1: that is not 0 */
     int idle;                      /* 1: its motion has not begun and leaves it where it was set */
     dem_servo servo;               /* of DEM_MOTION_SERVO, when its speed was chosen: >>servo */
@@ -5146,7 +5217,7 @@ typedef struct demi_lookers {
                                       copy, the head of slabs; null: this one */
     int tenths_told;               /* progress into a file: last tenth of this run reported */
     int under_way;                 /* > 0: an output runs a user-defined function; steps fail */
-    dem_replay *films;             /* open replays, which record frames automatically */
+    struct dem_replay *films;             /* open replays, which record frames automatically */
     void (*films_look)(dem_world *w);           /* records their frames; null: no replays */
     int output_count, reads;       /* reads: number of checkpoints read so far */
     int32_t output_last;           /* the last id given to an output */
@@ -5490,13 +5561,6 @@ static int demi_wall_there(const dem_world *w, dem_wall wall) {
 static int demi_sieve_wires(const dem_sieve_desc *s) {
     return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
 }
-
-/* ---------------------------------------------------------------------------------------------
-   >>memory
-   Memory and errors: the table of the arrays that hold a value for each body, the user's names, the
-   checks at the start of every public function, error messages, allocation and growing arrays. All
-   memory of a world is allocated and freed here.
-   --------------------------------------------------------------------------------------------- */
 /* Returns the largest gap, m, of a candidate: the skin and the range of the law. */
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
@@ -5536,6 +5600,26 @@ DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;
 }
+/* Returns the gap, m, below which the law is called. `radii`: sum of both radii; with a wall, the
+   radius of the body. 0: the law is called only in contact. */
+DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
+    if (demi_reach_free(w)) return (dem_real)w->margin.reach;
+    return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
+}
+/* Returns the energy `what`, J, of the coming step, summed over all domains. */
+static double demi_sum_energy(const dem_world *w, int what) {
+    double sum = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
+    return sum;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>memory
+   Memory and errors: the table of the arrays that hold a value for each body, the user's names, the
+   checks at the start of every public function, error messages, allocation and growing arrays. All
+   memory of a world is allocated and freed here.
+   --------------------------------------------------------------------------------------------- */
 /* Returns word k of a list of names, such as body_reals, and its length; null if there is none. */
 static const char *demi_name(const char *names, int k, int *length) {
     const char *at = names ? names : "";
@@ -5580,13 +5664,6 @@ static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
     demi_names_copy(desc->law_memory_names, w->memory_names);
     demi_names_point(w);
 }
-/* Returns the gap, m, below which the law is called. `radii`: sum of both radii; with a wall, the
-   radius of the body. 0: the law is called only in contact. */
-DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
-    if (demi_reach_free(w)) return (dem_real)w->margin.reach;
-    return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
-}
-
 /* --- arrays with a value for each body. Loops over these rows (>>bodies) allocate, add, remove,
        sort, check, save and send them to other slabs.
 
@@ -6193,6 +6270,208 @@ static const demi_field_row demi_world_desc_rows[] = {
     DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_FREE(dem_world_desc, growth_user),
     DEMI_ROW_END};
 
+/* --- values of fields as bytes of a file and as words; changes of a checkpoint, slabs and reports
+       show them. --- */
+enum { DEMI_ROW_MOST = DEM_GROUPS*24 };         /* bytes of a field in the file, at most */
+/* Writes the value of a field to `out` in the form of the file, r->size bytes. */
+static void demi_row_value(const demi_field_row *r, const void *item, void *out) {
+    const char *at = (const char *)item + r->offset, *text;
+    memset(out, 0, r->size);
+    if (r->type == 'h') {
+        const uint64_t digest = r->digest(item);
+        memcpy(out, &digest, sizeof digest);
+    } else if (r->type == 'p') {
+        char none[sizeof(void (*)(void))] = "";
+        const int32_t one = memcmp(at, none, sizeof none) != 0;
+        memcpy(out, &one, sizeof one);
+    } else if (r->type == 't') {
+        memcpy(&text, at, sizeof text);
+        if (text) strncpy((char *)out, text, r->size - 1);
+    } else memcpy(out, at, r->size);
+}
+/* Prints element k of a value in the form of the file, for an error message. digits: significant
+   digits of reals. */
+static void demi_row_print(const demi_field_row *r, const char *value, size_t k, int digits,
+                                 char *out, size_t size) {
+    const char *word = r->words;
+    int32_t i = 0;
+    uint64_t u;
+    dem_real x;
+    double d;
+    switch (r->type) {
+    case 'i': case 'e': case 'p':
+        memcpy(&i, value + 4*k, sizeof i);
+        for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
+            word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
+        if (word) { demi_words(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
+        memcpy(&i, value + 4*k, sizeof i);
+        demi_words(out, size, "%ld", (long)i);
+        break;
+    case 'u':
+        memcpy(&u, value + 8*k, sizeof u);
+        demi_words(out, size, "%llu", (unsigned long long)u);
+        break;
+    case 'd':
+        memcpy(&d, value + 8*k, sizeof d);
+        demi_words(out, size, "%.*g", digits, d);
+        break;
+    case 't': demi_words(out, size, "\"%.40s\"", value); break;
+    default:
+        memcpy(&x, value + sizeof x*k, sizeof x);
+        demi_words(out, size, "%.*g", digits, (double)x);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>stream
+   A stream of bytes that a visit writes, reads, counts or hashes: one function serves a file, a
+   copy in memory and a digest.
+   --------------------------------------------------------------------------------------------- */
+/* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
+   three are null, the visit only counts bytes. */
+typedef struct demi_stream {
+    FILE *file;
+    char *to;
+    const char *from;
+    uint64_t sum;                    /* hash of the bytes visited; 0 at the beginning: no hash */
+    size_t size, left;               /* bytes visited; bytes that may still be read at `from` */
+    int cut;                         /* 1: a read went beyond the last byte */
+} demi_stream;
+
+/* Writes `size` bytes of data, or reads them into data, as the stream says. A read beyond the end
+   sets data to zeros. */
+static void demi_visit(demi_stream *s, void *data, size_t size) {
+    s->size += size;
+    if (!size) return;
+    if (s->sum) s->sum = demi_hash(s->sum, data, size);
+    if (s->file) fwrite(data, 1, size, s->file);
+    else if (s->to) {
+        memcpy(s->to, data, size);
+        s->to += size;
+    } else if (s->from && size <= s->left) {
+        memcpy(data, s->from, size);
+        s->from += size;
+        s->left -= size;
+    } else if (s->from) {
+        memset(data, 0, size);
+        s->left = 0;
+        s->cut = 1;
+    }
+}
+#define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
+
+/* ---------------------------------------------------------------------------------------------
+   >>team
+   The worlds that step together: a single world, or the slabs of a domain decomposition. There is
+   one step (>>step), which runs its phases on every member of a team. Between phases the members
+   exchange data of ghost particles and agree on maxima and failures. A single world has no team and
+   is its own only member: an exchange then does nothing, and an agreement returns the member's own
+   numbers. struct demi_team in >>layout lists the functions of a team; >>slabs-step provides them
+   for slabs. At the end, the number of threads of a single world. Owns w->crew.
+   --------------------------------------------------------------------------------------------- */
+
+/* Return the number of members in this process, and member k. In all parts `h` is the head of a
+   team, or a single world, and `w` is a member. */
+static int demi_members(const dem_world *h) { return h->team ? h->team->count : 1; }
+static dem_world *demi_member(const dem_world *h, int k) {
+    return h->team ? h->team->members[k] : (dem_world *)h;
+}
+/* Runs a task on each member. A single world returns the result of the task. A team always returns
+   DEM_OK; it stores the results, and the next agreement returns a failure. */
+static dem_result demi_all(dem_world *h, dem_result (*task)(dem_world *member)) {
+    return h->team ? h->team->all(h, task) : task(h);
+}
+/* Returns a failure of any member since the last agreement, or DEM_OK. Replaces each of the `count`
+   values of `most` by its maximum over all processes; count <= 7 (demi_slabs_agree). */
+static dem_result demi_agree(dem_world *h, double *most, int count) {
+    return h->team ? h->team->agree(h, most, count) : DEM_OK;
+}
+/* Runs a task on each member and returns a failure of any of them. */
+static dem_result demi_all_agree(dem_world *h, dem_result (*task)(dem_world *member)) {
+    const dem_result result = demi_all(h, task);
+    return result == DEM_OK ? demi_agree(h, 0, 0) : result;
+}
+/* Copies the time step, and the impact speed it was chosen for, from the head to the members. */
+static void demi_dt_share(dem_world *h) {
+    int k;
+    for (k = 0; k < demi_members(h); k++) {
+        dem_world *w = demi_member(h, k);
+        w->clock.dt = h->clock.dt;
+        w->clock.assumed_speed = h->clock.assumed_speed;
+        w->stage.dt_valid = h->stage.dt_valid;
+    }
+}
+
+/* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
+   scene, or if another program keeps a core busy, since each parallel loop then waits for the
+   thread that does not run. So steps are timed, and half the present number, one, and twice the
+   present number are tried in turns. A trial ends when it has lost the time of four steps. After a
+   failed trial the world waits for 20 times the lost time, at least 400 steps, and longer each
+   time; after a successful one it tries again at once. Trials take at most some 5 % of the time.
+   Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
+   desc. --- */
+enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
+/* True if the number of threads of a world is to be chosen. */
+static int demi_crew_varies(const dem_world *h) {
+    return !h->crew.fixed && !h->team && h->desc.threads > 1;
+}
+static void demi_crew_begin(dem_world *h) {
+    int k;
+    for (k = 0; k < demi_members(h); k++) {
+        demi_crew *c = &demi_member(h, k)->crew;
+        if (!c->best) c->best = c->now = demi_member(h, k)->desc.threads;
+    }
+    h->crew.rebuilds = h->clock.rebuilds;
+    if (demi_crew_varies(h)) h->crew.begun = demi_clock();
+}
+/* The number of threads to try next: half as many as now, one, or twice as many, in turns. `slow`:
+   steps have become slower, perhaps since another program keeps cores busy. */
+static int demi_crew_other(demi_crew *c, int most, int slow) {
+    int k, n = c->best;
+    for (k = 0; k < 3 && n == c->best; k++) {
+        c->turn = slow && !k ? 1 : (c->turn + 1)%3;
+        n = c->turn == 0 ? DEMI_MAX(c->best/2, 1) : c->turn == 1 ? 1 : DEMI_MIN(2*c->best, most);
+    }
+    return n;
+}
+/* Starts a measurement with `now` threads, which may be `best`. */
+static void demi_crew_try(demi_crew *c, int now) {
+    c->now = now;
+    c->steps = 0;
+    c->sum = 0;
+}
+/* Measures the step and decides how many threads take the next one. */
+static void demi_crew_end(dem_world *w) {
+    demi_crew *c = &w->crew;
+    const double took = demi_crew_varies(w) ? demi_clock() - c->begun : 0;
+    const int first = !(c->cost > 0), trial = c->now != c->best;
+    double lost;
+    if (!demi_crew_varies(w)) return;
+    if (!trial) c->since += took;
+    if (w->clock.rebuilds != c->rebuilds) return;
+    c->sum += took;
+    c->steps++;
+    lost = c->sum - c->steps*c->cost;
+    if (trial) {
+        const int worse = lost > 4*c->cost;
+        if (!worse && c->steps < DEMI_CREW_STEPS) return;
+        c->wait = DEMI_MAX(20*lost, DEMI_MAX(400*c->cost, DEMI_MIN(2*c->wait, 10)));
+        if (!worse && c->sum < 0.97*c->steps*c->cost) {
+            c->best = c->now;
+            c->cost = c->sum/c->steps;
+            c->wait = 0;                        /* perhaps farther the same way */
+        }
+        c->since = 0;
+        demi_crew_try(c, c->best);
+    } else {
+        const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
+        if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
+        c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
+        demi_crew_try(c, first || slow || c->since > c->wait
+                      ? demi_crew_other(c, w->desc.threads, slow) : c->best);
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------
    >>laws
    Tables of the built-in contact laws, one row each. The law functions are in >>api, where
@@ -6422,6 +6701,21 @@ static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_c
         if (w->effects.twisting) dem_law_twist(c, memory + laws->at_twisting, f);
     }
     if (slides) memory[laws->at_sliding] = f->sliding;
+}
+/* A contact linearized about an overlap, for small motions. Stiffness: normal and tangential, N/m,
+   rolling, N m. Damping: likewise, N s/m and N m s. */
+typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
+/* Returns k and c of the built-in normal law at an overlap, m, during loading; the rest is 0. */
+static demi_stiffness demi_stiffness_normal(const dem_world *w, const dem_real *coef,
+                                            double overlap) {
+    demi_stiffness s = {0, 0, 0, 0, 0, 0};
+    s.k = (double)coef[DEMI_KN];
+    s.c = (double)coef[DEMI_CN];
+    if (demi_normal_is(w, DEMI_HERTZIAN)) {
+        s.k *= 1.5*sqrt(overlap);
+        s.c *= sqrt(sqrt(overlap));
+    }
+    return s;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -10169,6 +10463,24 @@ DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
     memset(&none, 0, sizeof none);
     return w ? w->bodies.balance : none;
 }
+/* Returns the index of the body with this id, or -1 if it does not exist (any more). */
+static int demi_body_find(const dem_world *w, dem_body b) {
+    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
+        w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
+    return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
+}
+/* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
+   they have no contact. Needs no solver; demi_joined is faster within a step. */
+static int demi_parted(const dem_world *w, int a, int b, int wall) {
+    int k, found = 0;
+    for (k = 0; k < w->joint_count && !found; k++) {
+        const dem_joint_desc *j = &w->joints[k].desc;
+        const int p = demi_body_find(w, j->a), q = j->b.slot ? demi_body_find(w, j->b) : -1;
+        found = !j->collide && (b < 0 ? p == a && !j->b.slot && j->wall.id == w->walls[wall].id
+                                : (p == a && q == b) || (p == b && q == a));
+    }
+    return found;
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>integrators
@@ -10763,6 +11075,8 @@ static void demi_finish(dem_world *w) {
     demi_domains_do(w, demi_domain_finish);
     w->stage.synced = 1;
 }
+/* The same as a task for demi_all. */
+static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_OK; }
 
 /* ---------------------------------------------------------------------------------------------
    >>cell
@@ -11644,6 +11958,48 @@ static double demi_wall_speed(const demi_wall *wall) {
     if (wall->extent < 0 && demi_length(p->spin) > 0) return -1;   /* infinite: search every step */
     return wall->extent < 0 ? (double)demi_length(p->velocity) : demi_pose_pace(wall, p);
 }
+/* Surfaces that move in themselves, such as belts: the wall stays, or follows its motion, and its
+   surface has a velocity of its own. At a contact the surface moves with the part of it across the
+   contact normal n: g - n (n.g). This part is continuous where a contact goes round a rim or a
+   corner, and 0 where n is along g. A velocity along n would do work against the elastic force
+   although the place of the surface, and with it the elastic energy, does not change: that creates
+   energy. `glide` and `glides` of walls hold the velocity; >>steering sets them. */
+/* Returns the velocity of the surface of a wall in this pose at a contact with normal n, m/s,
+   without that of the pose. */
+DEM_INLINE dem_vec3 demi_glide_at(const demi_wall *wall, const dem_pose *pose, dem_vec3 n) {
+    const dem_vec3 g = demi_rotate(pose->rotation, wall->glide);
+    return demi_sub(g, demi_scale(n, demi_dot(g, n)));
+}
+/* Returns the largest speed of a wall during its motion, m/s, also before the motion has begun. For
+   a user-defined motion: its present speed. A table is sampled eight times per row. */
+static double demi_pose_speed(const demi_wall *wall) {
+    const dem_motion *m = &wall->motion;
+    dem_pose p = wall->pose;
+    switch (m->kind) {
+    case DEM_MOTION_FIXED: return 0;
+    case DEM_MOTION_TRANSLATING: case DEM_MOTION_SERVO: return (double)demi_length(m->velocity);
+    case DEM_MOTION_ROTATING:
+        p.spin = demi_scale(demi_unit(m->axis), m->speed);
+        p.velocity = demi_cross(p.spin, demi_sub(p.position, m->point));
+        return demi_pose_pace(wall, &p);
+    case DEM_MOTION_OSCILLATING:
+        return (2*DEMI_PI*fabs((double)m->frequency) + (m->ramp > 0 ? 1.5/m->ramp : 0))*
+               fabs((double)m->amplitude);
+    case DEM_MOTION_TABLE: {
+        const double end = m->table[m->table_count - 1].time;
+        const int looks = 8*m->table_count;
+        double most = 0;
+        int k;
+        for (k = 0; k <= looks; k++) {
+            demi_wall_pose_at(0, wall, m->start + end*k/looks, &p);
+            most = DEMI_MAX(most, demi_pose_pace(wall, &p));
+        }
+        return most;
+    }
+    default: break;
+    }
+    return demi_pose_pace(wall, &p);
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>walls
@@ -12435,14 +12791,6 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     *next = laid;
     return DEM_OK;
 }
-DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
-    if (demi_null_look(world, __func__, pose, "pose")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, __func__, id);
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    *pose = world->walls[i].pose;
-    return DEM_OK;
-}
-
 /* Deletes the persistent contacts of a wall that is removed, since another wall may get its index.
    Call demi_list_drop first. */
 static void demi_wall_forget(dem_world *w, int wall) {
@@ -12511,32 +12859,6 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
     const int i = demi_wall_find(w, __func__, id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     demi_loads_reset(&w->walls[i].loads);
-    return DEM_OK;
-}
-
-/* ---------------------------------------------------------------------------------------------
-   >>belts
-   Surfaces that move in themselves, such as belts: the wall stays, or follows its motion, and its
-   surface has a velocity of its own. At a contact the surface moves with the part of it across the
-   contact normal n: g - n (n.g). This part is continuous where a contact goes round a rim or a
-   corner, and 0 where n is along g. A velocity along n would do work against the elastic force
-   although the place of the surface, and with it the elastic energy, does not change: that creates
-   energy. `glide` and `glides` of walls hold the velocity; >>steering sets them.
-   --------------------------------------------------------------------------------------------- */
-
-/* Returns the velocity of the surface of a wall in this pose at a contact with normal n, m/s,
-   without that of the pose. */
-DEM_INLINE dem_vec3 demi_glide_at(const demi_wall *wall, const dem_pose *pose, dem_vec3 n) {
-    const dem_vec3 g = demi_rotate(pose->rotation, wall->glide);
-    return demi_sub(g, demi_scale(n, demi_dot(g, n)));
-}
-DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
-                                                 dem_vec3 *velocity) {
-    int i;
-    if (demi_null_look(world, __func__, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
-    i = demi_wall_find((dem_world *)world, __func__, id);
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    *velocity = demi_rotate(world->walls[i].pose.rotation, world->walls[i].glide);
     return DEM_OK;
 }
 
@@ -24194,6 +24516,14 @@ static int demi_touch(dem_world *w) {
     } while (again);
     return 1;
 }
+/* Sets what a contact does not use, and its row of coefficients, to 0, since files and messages
+   contain all of it. */
+static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
+    int e;
+    c->row = 0;
+    for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;
+    if (!c->odd) memset(&c->more, 0, sizeof c->more);
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>kept-respond
@@ -25408,13 +25738,7 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
     return 1;
 }
 
-/* Sets the force loop for the laws in force. Returns its name in reports. */
-static const char *demi_kernel_choose(dem_world *w) {
-    w->kernel = w->effects.clustered ? demi_pairs_members
-        : w->events.n.on ? demi_pairs_noted : demi_pairs;
-    if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
-    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
-}
+#ifndef DEM_NO_IMPULSES
 
 /* ---------------------------------------------------------------------------------------------
    >>impulses
@@ -25960,28 +26284,10 @@ enum { DEMI_JOINT_KINDS = sizeof demi_joint_kinds/sizeof *demi_joint_kinds };
 static int demi_joint_rows(dem_joint_kind kind) {
     return (int)kind > 0 && (int)kind < DEMI_JOINT_KINDS ? demi_joint_kinds[kind] : 0;
 }
-/* Returns the index of the body with this id, or -1 if it does not exist (any more). */
-static int demi_joint_body(const dem_world *w, dem_body b) {
-    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
-        w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
-    return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
-}
-/* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
-   they have no contact. Needs no solver; demi_joined is faster within a step. */
-static int demi_parted(const dem_world *w, int a, int b, int wall) {
-    int k, found = 0;
-    for (k = 0; k < w->joint_count && !found; k++) {
-        const dem_joint_desc *j = &w->joints[k].desc;
-        const int p = demi_joint_body(w, j->a), q = j->b.slot ? demi_joint_body(w, j->b) : -1;
-        found = !j->collide && (b < 0 ? p == a && !j->b.slot && j->wall.id == w->walls[wall].id
-                                : (p == a && q == b) || (p == b && q == a));
-    }
-    return found;
-}
 /* True if both bodies of a joint, or its body and its wall, still exist. */
 static int demi_joint_alive(const dem_world *w, const demi_joint *j) {
-    if (demi_joint_body(w, j->desc.a) < 0) return 0;
-    if (j->desc.b.slot) return demi_joint_body(w, j->desc.b) >= 0;
+    if (demi_body_find(w, j->desc.a) < 0) return 0;
+    if (j->desc.b.slot) return demi_body_find(w, j->desc.b) >= 0;
     return !j->desc.wall.id || demi_wall_there(w, j->desc.wall);
 }
 /* Returns the number of joints whose bodies and walls still exist. */
@@ -26263,8 +26569,8 @@ static int demi_joints_room(dem_world *w) {
     for (i = 0; i < n; i++) {
         const dem_joint_desc *d = &w->joints[i].desc;
         demi_rod *r = s->rods + i;
-        const int body[2] = {demi_joint_body(w, d->a),
-                             d->b.slot ? demi_joint_body(w, d->b) : -1};
+        const int body[2] = {demi_body_find(w, d->a),
+                             d->b.slot ? demi_body_find(w, d->b) : -1};
         memset(r, 0, sizeof *r);
         r->a = body[0];
         r->b = body[1] >= 0 ? body[1] : w->bodies.count + w->kept_first[DEMI_DOMAINS] + i;
@@ -27798,13 +28104,6 @@ static void demi_impulses_fixed(dem_world *w) {
             }
         }
 }
-/* Returns the energy `what`, J, of the coming step, summed over all domains. */
-static double demi_sum_energy(const dem_world *w, int what) {
-    double sum = 0;
-    int d;
-    for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
-    return sum;
-}
 /* Largest number of rounds of demi_impulses_tame. */
 enum { DEMI_TAMINGS = 8 };
 /* Mends the two kinds of contacts that may add energy, and returns their number. Newton's
@@ -27898,66 +28197,6 @@ static void demi_impulses(dem_world *w) {
     w->margin.gone += farthest;
     w->margin.creep += 2*farthest;
 }
-/* Contacts are detected half a step ahead, where the present velocities carry the bodies. Impulses
-   and force fields act there, so that a step is symmetric in time and of second order. */
-enum { DEMI_AHEAD = 1024 };                     /* bodies that a thread takes at a time */
-/* Moves run `index` of the bodies half a step ahead; last_pos and last_orient keep the present
-   positions and orientations. */
-static void demi_some_ahead(dem_world *w, int index) {
-    const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
-    const dem_real h = w->clock.dt/2;
-    const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
-    int i, k;
-    memcpy(w->bodies.last_pos + first, w->bodies.pos + first, size);
-    for (i = begin; i < end; i++)
-        for (k = 4*i; k < 4*i + 3 && w->bodies.went[i]; k++)
-            w->bodies.pos[k] += w->bodies.vel[k]*h;
-    if (!w->bodies.orienting) return;
-    memcpy(w->bodies.last_orient + first, w->bodies.orient + first, size);
-    demi_orient_move(w, 0, begin, end);
-}
-/* Moves them back, and restores their spins. */
-static void demi_some_back(dem_world *w, int index) {
-    const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
-    const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
-    int i;
-    memcpy(w->bodies.pos + first, w->bodies.last_pos + first, size);
-    if (!w->bodies.orienting) return;
-    memcpy(w->bodies.orient + first, w->bodies.last_orient + first, size);
-    for (i = begin; i < end; i++) {
-        const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
-        if (!w->bodies.shape[i] || !(w->bodies.inv_mass[i] > 0)) continue;
-        demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
-            demi_at(w->bodies.angular + 4*i), demi_v(1/I.x, 1/I.y, 1/I.z)));
-        if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
-    }
-}
-/* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
-   is its pose a whole step ahead, midway between two detections; surface velocities are those of
-   that time. Bodies that were just set are not ahead (demi_move_midpoint). */
-static void demi_ahead(dem_world *w) {
-    const double dt = (double)w->clock.dt;
-    const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
-    int i;
-    demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
-    for (i = 0; i < w->wall_count; i++) {
-        demi_wall *wall = &w->walls[i];
-        dem_pose pose;
-        wall->mid = wall->ahead = wall->pose;
-        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
-        if (demi_pose_sane(&pose)) wall->pose = pose;
-        demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
-        if (demi_pose_sane(&pose)) wall->ahead = pose;
-    }
-}
-/* Moves bodies and walls back to the positions before demi_ahead. */
-static void demi_ahead_back(dem_world *w) {
-    const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
-    int i;
-    demi_parallel(w, w->crew.now, runs, 0, demi_some_back);
-    for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
-}
 /* Adds the work of walls, joints and motors in the coming step to the energies due. */
 static void demi_impulses_due(dem_world *w) {
     int i;
@@ -27968,15 +28207,6 @@ static void demi_impulses_due(dem_world *w) {
     }
     for (i = 0; i < w->wall_count; i++)
         w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
-}
-/* Books the energies due in the ledger, once bodies have moved. With springs they are 0. */
-static void demi_due_book(dem_world *w) {
-    static const int flows[5] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS,
-                                 DEMI_E_FORCE};
-    int i;
-    for (i = 0; i < 5; i++) w->booked.energy[flows[i]] += w->booked.due[i];
-    w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
-    w->booked.throughput += fabs(w->booked.due[3]) + fabs(w->booked.due[4]);
 }
 /* Returns 1 if entry p of domain d's pruned neighbour list has an impulse or overlaps, and fills
    *out and *gap unless out is null: see demi_response_row. The normal of a constraint is that of
@@ -27998,6 +28228,8 @@ static int demi_impulses_info(const dem_world *w, int d, int p, dem_contact_info
                           demi_scale(out->normal, memory[6*stride] - memory[7*stride]));
     return 1;
 }
+
+#endif /* DEM_NO_IMPULSES */
 
 /* ---------------------------------------------------------------------------------------------
    >>sizes
@@ -29652,117 +29884,834 @@ DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>team
-   The worlds that step together: a single world, or the slabs of a domain decomposition. There is
-   one step (>>step), which runs its phases on every member of a team. Between phases the members
-   exchange data of ghost particles and agree on maxima and failures. A single world has no team and
-   is its own only member: an exchange then does nothing, and an agreement returns the member's own
-   numbers. struct demi_team in >>layout lists the functions of a team; >>slabs-step provides them
-   for slabs. At the end, the number of threads of a single world. Owns w->crew.
+   >>steering
+   New motions of walls, and new velocities of belts, during a run. After most changes of the scene
+   the next step computes all forces again, from the velocities of the full step. A program that
+   leads a wall sets its motion at every step, or every few steps. To make this cheap, only forces
+   of contacts with this wall are computed again: those with the old velocity are subtracted from
+   the forces on grains, those with the new velocity are added. Sums thus differ by rounding. This
+   part writes the motions and surface velocities (`glide`, `glides`) of walls, and the forces and
+   half-step velocities of grains that touch such a wall.
    --------------------------------------------------------------------------------------------- */
 
-/* Return the number of members in this process, and member k. In all parts `h` is the head of a
-   team, or a single world, and `w` is a member. */
-static int demi_members(const dem_world *h) { return h->team ? h->team->count : 1; }
-static dem_world *demi_member(const dem_world *h, int k) {
-    return h->team ? h->team->members[k] : (dem_world *)h;
-}
-/* Runs a task on each member. A single world returns the result of the task. A team always returns
-   DEM_OK; it stores the results, and the next agreement returns a failure. */
-static dem_result demi_all(dem_world *h, dem_result (*task)(dem_world *member)) {
-    return h->team ? h->team->all(h, task) : task(h);
-}
-/* Returns a failure of any member since the last agreement, or DEM_OK. Replaces each of the `count`
-   values of `most` by its maximum over all processes; count <= 7 (demi_slabs_agree). */
-static dem_result demi_agree(dem_world *h, double *most, int count) {
-    return h->team ? h->team->agree(h, most, count) : DEM_OK;
-}
-/* Runs a task on each member and returns a failure of any of them. */
-static dem_result demi_all_agree(dem_world *h, dem_result (*task)(dem_world *member)) {
-    const dem_result result = demi_all(h, task);
-    return result == DEM_OK ? demi_agree(h, 0, 0) : result;
-}
-/* Copies the time step, and the impact speed it was chosen for, from the head to the members. */
-static void demi_dt_share(dem_world *h) {
-    int k;
-    for (k = 0; k < demi_members(h); k++) {
-        dem_world *w = demi_member(h, k);
-        w->clock.dt = h->clock.dt;
-        w->clock.assumed_speed = h->clock.assumed_speed;
-        w->stage.dt_valid = h->stage.dt_valid;
-    }
-}
-/* Completes the half kick that the last step left open (demi_finish), as a task for demi_all. */
-static dem_result demi_member_finish(dem_world *w) { demi_finish(w); return DEM_OK; }
+/* A program leads a wall if at most this number of steps lie between two motions: eight, and half a
+   step for rounding errors of times. */
+#define DEMI_LED 8.5
 
-/* --- threads. desc.threads is the largest number. Threads can be slower than one: in a small
-   scene, or if another program keeps a core busy, since each parallel loop then waits for the
-   thread that does not run. So steps are timed, and half the present number, one, and twice the
-   present number are tried in turns. A trial ends when it has lost the time of four steps. After a
-   failed trial the world waits for 20 times the lost time, at least 400 steps, and longer each
-   time; after a successful one it tries again at once. Trials take at most some 5 % of the time.
-   Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
-   desc. --- */
-enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
-/* True if the number of threads of a world is to be chosen. */
-static int demi_crew_varies(const dem_world *h) {
-    return !h->crew.fixed && !h->team && h->desc.threads > 1;
+/* Evaluates a tile of contacts with a wall, adds `sign` times their forces to those of the grains,
+   and updates the half-step velocities of these grains. Contact histories do not change. Empties
+   the tile. */
+static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
+    int q;
+    demi_kept_tile_answer(w, r, t);
+    for (q = 0; q < t->count; q++) {
+        demi_kept *c = t->contact[q];
+        dem_vec3 force, torque;
+        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
+        c->force = demi_kept_own(t, q, &torque);
+        force = demi_row(t->rows.force, q);
+        torque = demi_row(t->rows.torque[0], q);
+        if (w->desc.planar) force.z = torque.x = torque.y = 0;
+        demi_force_add(w->bodies.force + 4*c->a, demi_scale(force, sign));
+        demi_force_add(w->bodies.torque + 4*c->a, demi_scale(torque, sign));
+        if (w->stage.primed) demi_prime_body(w, c->a);
+    }
+    t->count = t->lifted = t->shaped = 0;
 }
-static void demi_crew_begin(dem_world *h) {
+/* Adds `sign` times the forces of all contacts with a wall to those of the grains. */
+static void demi_steer(dem_world *w, int wall, dem_real sign) {
+    DEMI_ALIGNED demi_kept_tile tile;
+    demi_run run = demi_run_begin(w, 0);
+    int d, k, known;
+    if (!w->desc.law) demi_run_laws(w, &run, 0);
+    demi_kept_tile_begin(&tile, &run, DEMI_TILE);
+    for (d = 0; d < w->domain_count; d++) {
+        known = demi_kept_rows_begin(w, d, w->domains[d].kept);
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
+            demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
+            if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
+        }
+        if (tile.count) demi_steer_tile(w, &run, &tile, sign);
+        if (!known) w->domains[d].coefs = 0;    /* other contacts have no row yet */
+    }
+}
+/* Call this before the velocity of a wall's surface changes, and demi_wall_after after it. If the
+   forces are valid, the first call subtracts those of the wall's contacts and the second adds them
+   with the new velocity. Otherwise the next step computes all forces again. So it does with
+   impulses, with rails (their reactions depend on these forces) and with laws that exchange
+   user-defined numbers. */
+static void demi_wall_before(dem_world *w, int wall) {
+    demi_finish(w);                             /* the open half kick belongs to the old forces */
+    if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
+        !w->stage.list_valid || w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
+        w->stage.forces_valid = w->stage.primed = 0;
+    else demi_steer(w, wall, -1);
+}
+/* Call this after the velocity of a wall's surface has changed: see demi_wall_before. */
+static void demi_wall_after(dem_world *w, int wall) {
+    if (w->stage.forces_valid) demi_steer(w, wall, 1);
+}
+
+DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
+                                                 dem_vec3 *velocity) {
+    int i;
+    if (demi_null_look(world, __func__, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *velocity = demi_rotate(world->walls[i].pose.rotation, world->walls[i].glide);
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
+    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
+    if (!wall) return DEM_ERROR_ARGUMENT;
+    if (!demi_place(velocity))
+        return demi_refuse(w, __func__, "velocity of wall %d is (%g, %g, "
+                           "%g) m/s, must be finite and within %g m/s; check how it was computed",
+                           (int)id.id, (double)velocity.x, (double)velocity.y, (double)velocity.z,
+                           DEMI_FARTHEST);
+    if (w->desc.planar && fabs((double)velocity.z) > 0)
+        return demi_refuse(w, __func__, "velocity of wall %d has the z "
+                           "component %g m/s, must be 0 in a planar world, where no grain moves "
+                           "along z", (int)id.id, (double)velocity.z);
+    demi_wall_before(w, i);
+    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
+    wall->glides = demi_dot(velocity, velocity) > 0;
+    demi_wall_after(w, i);
+    demi_built(w, __func__);
+    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
+    if (demi_null_look(world, __func__, pose, "pose")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, __func__, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *pose = world->walls[i].pose;
+    return DEM_OK;
+}
+/* True if the time step stays right for a wall with a new motion: the wall is not faster than the
+   impacts for which the step was chosen, and moves by less than a tenth of the smallest radius in a
+   step. */
+static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
+    const double v = demi_pose_speed(wall);
+    return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
+        (!(v > 0) || w->desc.dt > 0 || v <= w->clock.assumed_speed);
+}
+/* True if a wall stays where it is when its new motion `to` begins. A rotation may start there with
+   rounding errors. A motion with a phase, by a table or by a function may begin elsewhere. */
+static int demi_wall_stays(const demi_wall *from, const demi_wall *to) {
+    return to->motion.kind == DEM_MOTION_ROTATING ||
+        (!memcmp(&from->pose.position, &to->pose.position, sizeof to->pose.position) &&
+         !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
+}
+/* True if a program leads a wall that stays: its old motion began at most DEMI_LED steps ago, or
+   has yet to begin. */
+static int demi_wall_led(const dem_world *w, const demi_wall *from) {
+    return w->clock.time - from->motion.start <= DEMI_LED*(double)w->clock.dt;
+}
+DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (demi_null(w, __func__, motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
+    demi_wall next;
+    const void *rows;
+    void *old;
+    int dropped, remains;
+    dem_result result;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
+    if (result != DEM_OK) return result;
+    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
+       decides which of its periodic images are at rest relative to it */
+    remains = demi_wall_stays(&w->walls[i], &next) && demi_wall_remains(w, &next, i) &&
+        (!w->repeating || (!demi_motion_turns(&w->walls[i].motion) &&
+                           !demi_motion_turns(&next.motion)));
+    dropped = remains || demi_list_drop(w);
+    rows = dropped ? w->walls[i].motion.table : next.motion.table;
+    memcpy(&old, &rows, sizeof old);
+    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
+    if (!dropped) return demi_no_memory(w, __func__);
+    if (!remains) demi_surfaces_outdated(w);
+    if (!remains || !demi_wall_led(w, &w->walls[i]))
+        w->stage.forces_valid = w->stage.primed = 0;
+    demi_wall_before(w, i);
+    w->walls[i] = next;
+    demi_wall_after(w, i);
+    demi_built(w, __func__);
+    if (!remains || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>servo
+   Servo walls (DEM_MOTION_SERVO): before each step the speed of the wall is chosen from the force
+   that grains exert on it, so that the force approaches a target. The wall has no inertia. Owns
+   `servo` of walls; reads their loads and the persistent contacts of the last step. In a team the
+   sums extend over all members, in their order, and the walls of the first member move.
+
+   The law. Let K and C be the sums of normal stiffness and damping over the contacts of the wall, F
+   the present force, T the target, v and u the speeds towards the grains in the coming and in the
+   last step:
+       K dt (v - b u) + C (v - u) = a (T - F),   |v| at most the largest speed,
+   a = DEMI_SERVO_GAIN, b = DEMI_SERVO_KEPT. With C = b = 0 this is the servo of the triaxial cell
+   of YADE, which moves by (1 - damping)(T - F)/K in a step (TriaxialStressController: K is summed
+   over the contacts of the wall), and that of PFC, v = a (T - F)/(k N dt) for N contacts of
+   stiffness k. The terms of C make up for the change of the damping force, C (v - u): without them
+   the servo is unstable from step to step if C > K dt/a. The term of b makes it a PI controller.
+   While the target changes at a rate R, the error is R K dt (1 - b)/(a B) on a bed of stiffness B.
+   Stability. While grains rest, the error of contacts without damping obeys z^2 - (1 + b - a) z + b
+   = 0, whose roots are inside the unit circle if a < 2 + 2 b [Jury]: contacts may be 7 times as
+   stiff as K says, and four times as damped as C says. If grains move, the wall acts on them as a
+   dashpot K dt (1 - b)/a and a mass (b K dt + C) dt/a, which never supply energy. The mass is of
+   the order dt/t_c of that of the grains in contact.
+   --------------------------------------------------------------------------------------------- */
+#define DEMI_SERVO_GAIN 0.5        /* a; below its limit, since K grows with new contacts */
+#define DEMI_SERVO_KEPT 0.9        /* b */
+
+/* Returns the force along the direction of wall `of` that wall i exerts on the grains of w, N; 0 if
+   it is not part of the same piston. first: the world whose walls move. */
+static double demi_servo_force_of(const dem_world *first, const dem_world *w, int of, int i) {
+    const demi_wall *walls = first->walls;
+    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_alike(&walls[i], &walls[of])) return 0;
+    return -(double)demi_dot(w->walls[i].loads.force, demi_unit(walls[of].motion.velocity));
+}
+/* Returns the sum over the piston. */
+static double demi_servo_force(const dem_world *first, const dem_world *w, int of) {
+    double sum = 0;
+    int i;
+    for (i = 0; i < w->wall_count; i++) sum += demi_servo_force_of(first, w, of, i);
+    return sum;
+}
+/* Books the work that follows from a change of the wall's speed, m/s. The step has booked F v dt
+   with the speed before, but half of the impulse F dt acts after the change. */
+static void demi_servo_book(dem_world *w, const dem_world *first, int of, double change) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        const double work = demi_servo_force_of(first, w, of, i)*change*(double)w->clock.dt/2;
+        w->walls[i].loads.work += work;
+        if (w->desc.ledger) w->booked.energy[DEMI_E_WALLS] += work;
+    }
+}
+/* `part` of `sum` in demi_team: that force, and the sums of stiffness and damping over the contacts
+   of the group, as the built-in laws have them or by desc.law_stiffness. A body that is not a
+   sphere counts with its whole mass, so its damping is an upper bound. */
+enum { DEMI_SERVO_FORCE, DEMI_SERVO_STIFFNESS, DEMI_SERVO_DAMPING, DEMI_SERVO_SUMS };
+static void demi_servo_part(const dem_world *w, int of, double *out) {
+    const dem_world *first = w->team ? w->team->members[0] : w;
+    const demi_wall *walls = first->walls;
+    int d;
+    out[DEMI_SERVO_FORCE] = demi_servo_force(first, w, of);
+    out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
+        for (; c < end && w->domains[d].walls; c++) {
+            const double slope = (double)c->slope;
+            dem_real coef[DEMI_COEFS], root[2];
+            demi_stiffness s;
+            /* a body that has changed slab has left its contacts there until forces are computed */
+            if (c->b >= 0 || demi_is_ghost(w, c->a) ||
+                !demi_walls_alike(&walls[c->wall], &walls[of]) ||
+                (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
+            demi_kept_coefs(w, c, coef, root);
+            coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
+            s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
+            if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
+            if (w->desc.law && w->desc.law_stiffness > 0) s.k = (double)w->desc.law_stiffness;
+            out[DEMI_SERVO_STIFFNESS] += s.k*slope*slope*(double)c->lift;
+            out[DEMI_SERVO_DAMPING] += s.c*slope*(double)c->share;
+        }
+    }
+}
+/* Sums over all members, see `sum` of demi_team. */
+static dem_result demi_servo_sum(dem_world *h, int of, double *sums) {
+    if (h->team) return h->team->sum(h, demi_servo_part, of, sums, DEMI_SERVO_SUMS);
+    demi_servo_part(h, of, sums);
+    return DEM_OK;
+}
+/* Chooses the speed of wall w for the step that begins now. */
+static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double *sums) {
+    const dem_motion *m = &wall->motion;
+    const double dt = (double)h->clock.dt, most = (double)demi_length(m->velocity);
+    const double far = m->travel > 0 ? (double)m->travel : DEMI_FARTHEST;
+    dem_servo *s = &wall->servo;
+    double push, gives;
+    s->travel += s->speed*(h->clock.time - s->time);
+    s->time = h->clock.time;
+    s->target = demi_servo_target(m, s->time);
+    s->force = sums[DEMI_SERVO_FORCE];
+    s->stiffness = sums[DEMI_SERVO_STIFFNESS];
+    s->damping = sums[DEMI_SERVO_DAMPING];
+    push = DEMI_SERVO_GAIN*(s->target - s->force) +
+        (DEMI_SERVO_KEPT*s->stiffness*dt + s->damping)*s->speed;
+    gives = s->stiffness*dt + s->damping;
+    s->speed = fabs(push) < most*gives ? push/gives : push > 0 ? most : push < 0 ? -most : 0;
+    if (fabs(s->travel + s->speed*dt) > far)
+        s->speed = ((s->speed > 0 ? far : -far) - s->travel)/dt;
+}
+/* Returns the first wall of the piston of wall i. */
+static int demi_servo_leader(const dem_world *first, int i) {
+    int k = 0;
+    while (k < i && (first->walls[k].kind == DEMI_WALL_NONE ||
+                     !demi_walls_alike(&first->walls[k], &first->walls[i]))) k++;
+    return k;
+}
+/* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */
+static dem_result demi_servos_lead(dem_world *h) {
+    dem_world *first = demi_member(h, 0);
+    double sums[DEMI_SERVO_SUMS], before;
+    dem_result result = DEM_OK;
+    int i, k;
+    for (i = 0; i < first->wall_count && result == DEM_OK; i++) {
+        demi_wall *wall = &first->walls[i];
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_SERVO ||
+            h->clock.time < wall->motion.start) continue;
+        k = demi_servo_leader(first, i);
+        if (k != i) { wall->servo = first->walls[k].servo; continue; }
+        result = demi_servo_sum(h, i, sums);
+        if (result != DEM_OK) break;
+        before = wall->servo.speed;
+        demi_servo_choose(h, wall, sums);
+        for (k = 0; k < demi_members(h); k++)
+            demi_servo_book(demi_member(h, k), first, i, wall->servo.speed - before);
+    }
+    return result;
+}
+/* Returns the state of a servo wall at the present time. */
+static dem_servo demi_servo_now(const dem_world *w, int wall) {
+    const dem_motion *m = &w->walls[wall].motion;
+    dem_servo s = w->walls[wall].servo;
+    s.travel += w->clock.time > s.time ? s.speed*(w->clock.time - s.time) : 0;
+    s.target = w->clock.time < m->start ? 0 : demi_servo_target(m, w->clock.time);
+    s.force = demi_servo_force(w, w, wall);
+    return s;
+}
+DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_servo *servo) {
+    int i;
+    if (demi_null_look(world, __func__, servo, "servo")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
+        return demi_refuse(world, __func__, "the motion of wall %d is not "
+                           "DEM_MOTION_SERVO; set it with dem_wall_motion_set", (int)id.id);
+    *servo = demi_servo_now(world, i);
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>rails
+   Bodies whose axes are locked (dem_body_rail_set). When all forces of a step are known, the
+   reaction of each rail is added to the force and torque of its body. It is such that the next kick
+   gives the prescribed velocity in the middle of the next step along locked axes, whatever the
+   integrator. Owns the rails; adds to forces and torques of bodies, and rotates bodies that are not
+   spheres about free axes.
+   Translation and spheres: r = m (v - u)/h - f - m g, where u is the velocity of the last half
+   step, v that of the next one and h their distance in time. Other shapes: the spin w of the next
+   step obeys w = prescribed along locked axes and (J w) = L + T h along free ones, with the inertia
+   J of the middle of that step. The body then rotates with w for the whole step, so the axis does
+   not wander: its own free rotation would also turn about locked axes.
+   A rail of a wall. The body is carried by the rigid motion of the wall between its two poses, so
+   its path along locked axes is that of a point of the wall, for any step and integrator. Motion
+   relative to the wall, with the velocity of the rail and along free axes, is split: half before
+   the wall moves, half after. Velocities are those of the surface: v in the middle of the step,
+   or at its end with integrators that have no half kick, and the predicted one at its end. The
+   poses of the next step are known before it, except of servo walls, whose speed is taken as
+   constant; demi_rails_carry books what the change of their speed adds.
+   --------------------------------------------------------------------------------------------- */
+#define DEMI_OF dem_rail_desc
+static const demi_field_row demi_rail_fields[] = {
+    DEMI_LIMITED(DEMI_OF, axes, 'i', DEMI_FROM, DEM_RAIL_ALL, ""),
+    DEMI_LIMITED(DEMI_OF, velocity, 'v', DEMI_ANY, DEMI_FARTHEST, "m/s"),
+    DEMI_LIMITED(DEMI_OF, spin, 'v', DEMI_ANY, DEMI_FARTHEST, "rad/s"),
+    DEMI_ROW(DEMI_OF, wall, 'i'), DEMI_ROW_END};
+#undef DEMI_OF
+/* Returns the index of the body of a rail; -1 if it was removed or is fixed. */
+static int demi_rail_body(const dem_world *w, const demi_rail *r) {
+    const uint32_t slot = r->body.slot - 1;
+    const int i = w->bodies.slot_generation[slot] == r->body.generation
+        ? w->bodies.slot_index[slot] : -1;
+    return i >= 0 && w->bodies.inv_mass[i] > 0 ? i : -1;
+}
+/* The position of body i, with a rail, as if its path had crossed no periodic face, m. */
+static dem_vec3 demi_rail_place(const dem_world *w, const demi_rail *r, int i) {
+    const demi_periods p = demi_periods_of(w);
+    return demi_add(r->at, demi_nearest(&p, demi_sub(demi_at(w->bodies.pos + 4*i), r->at)));
+}
+/* Between two steps only dem_body_set moves a body. The coordinates that it has changed count as
+   given, not as those of an image across a periodic face. */
+static void demi_rail_given(const dem_world *w, demi_rail *r, int i) {
+    const demi_periods p = demi_periods_of(w);
+    const dem_vec3 x = demi_at(w->bodies.pos + 4*i);
+    dem_real by[3], now[3], at[3];
     int k;
-    for (k = 0; k < demi_members(h); k++) {
-        demi_crew *c = &demi_member(h, k)->crew;
-        if (!c->best) c->best = c->now = demi_member(h, k)->desc.threads;
-    }
-    h->crew.rebuilds = h->clock.rebuilds;
-    if (demi_crew_varies(h)) h->crew.begun = demi_clock();
+    demi_put(by, demi_nearest(&p, demi_sub(x, r->seen)));
+    demi_put(now, x);
+    demi_put(at, demi_rail_place(w, r, i));
+    for (k = 0; k < 3; k++)                     /* wrapping leaves a rounding error */
+        if (DEMI_ABS(by[k]) > DEM_R(1e-6)*w->bodies.pos[4*i + 3]) at[k] = now[k];
+    r->at = demi_at(at);
 }
-/* The number of threads to try next: half as many as now, one, or twice as many, in turns. `slow`:
-   steps have become slower, perhaps since another program keeps cores busy. */
-static int demi_crew_other(demi_crew *c, int most, int slow) {
-    int k, n = c->best;
-    for (k = 0; k < 3 && n == c->best; k++) {
-        c->turn = slow && !k ? 1 : (c->turn + 1)%3;
-        n = c->turn == 0 ? DEMI_MAX(c->best/2, 1) : c->turn == 1 ? 1 : DEMI_MIN(2*c->best, most);
+/* Returns the index of the wall that a rail follows; -1 if there is none. */
+static int demi_rail_wall(const dem_world *w, const demi_rail *r) {
+    const dem_wall wall = r->state.desc.wall;
+    return wall.id && demi_wall_there(w, wall) ? demi_wall_place(wall) : -1;
+}
+/* Gives the velocity and spin that a rail prescribes at x in a pose of its wall, or without a wall
+   (pose null); of axes that are not locked, any numbers. */
+static void demi_rail_wants(const demi_rail *r, const dem_pose *pose, dem_vec3 x, dem_real *v,
+                            dem_real *s) {
+    const dem_rail_desc *d = &r->state.desc;
+    demi_put(v, pose ? demi_add(d->velocity, demi_surface_at(pose, x)) : d->velocity);
+    demi_put(s, pose ? demi_add(d->spin, pose->spin) : d->spin);
+}
+/* Returns by how much a body moves relative to its wall in a step, m. v: its mean velocity along
+   free axes. */
+static dem_vec3 demi_rail_strays(const dem_world *w, const demi_rail *r, const dem_pose *from,
+                                 const dem_real *v) {
+    dem_real by[3], flow[3];
+    int k;
+    demi_put(by, r->state.desc.velocity);
+    demi_put(flow, demi_surface_at(from, r->at));
+    for (k = 0; k < 3; k++) if (!(r->state.desc.axes >> k & 1)) by[k] = v[k] - flow[k];
+    return demi_scale(demi_at(by), w->clock.dt);
+}
+/* Returns where a body is after `part` of a step, 1/2 or 1, in which its wall moves from one pose
+   to another, m. gone: see demi_rail_strays. */
+static dem_vec3 demi_rail_ride(const demi_rail *r, dem_vec3 gone, const dem_pose *from,
+                               const dem_pose *to, dem_real part) {
+    const dem_vec3 half = demi_unrotate(from->rotation, demi_scale(gone, DEM_R(0.5)));
+    return demi_add(demi_add(to->position, demi_rotate(to->rotation, demi_add(r->on, half))),
+                    demi_scale(gone, part - DEM_R(0.5)));
+}
+/* Gives the velocity and spin that a rail will prescribe for body i in the next step. drift: its
+   mean velocity then along free axes. */
+static void demi_rail_ahead(const dem_world *w, const demi_rail *r, int i, const dem_real *drift,
+                            dem_real *v, dem_real *s) {
+    const int of = demi_rail_wall(w, r), halves = demi_integrator_of(w)->predicts;
+    const demi_wall *wall = of < 0 ? 0 : &w->walls[of];
+    dem_pose ahead;
+    if (!wall) { demi_rail_wants(r, 0, r->at, v, s); return; }
+    ahead = wall->pose;
+    if (wall->motion.kind != DEM_MOTION_FIXED)
+        demi_wall_pose_at(w, wall, w->clock.time + (double)w->clock.dt/(halves ? 2 : 1), &ahead);
+    if (!demi_pose_sane(&ahead)) ahead = wall->pose;        /* the step will fail */
+    demi_rail_wants(r, &ahead, demi_rail_ride(
+        r, demi_rail_strays(w, r, &wall->pose, drift), &wall->pose, &ahead,
+        halves ? DEM_R(0.5) : 1), v, s);
+    if (!halves && demi_shape_of(w, i))                     /* these rotate with the mean spin */
+        demi_put(s, demi_add(demi_at(s), demi_scale(demi_sub(wall->pose.spin, ahead.spin),
+                                                    DEM_R(0.5))));
+}
+/* Returns J x for a body with orientation q and principal moments I. */
+static dem_vec3 demi_inertia_times(dem_quat q, dem_vec3 I, dem_vec3 x) {
+    const dem_vec3 m = dem_quat_unrotate(q, x);
+    return dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
+}
+/* Solves for the spin w of the next step of a body that is not a sphere, see above. L: its angular
+   momentum without reaction; locked: bit k: w_k is want[k]. Returns J w. */
+static dem_vec3 demi_rail_turn(const dem_world *w, int i, int locked, const dem_real *want,
+                               dem_vec3 L, dem_vec3 *spin) {
+    const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
+    const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+    const dem_real h = w->clock.dt/2;
+    dem_quat mid = q;
+    int pass, k;
+    for (pass = 0; pass < 3; pass++) {
+        dem_vec3 row[3], c[3];
+        dem_real b[3], det;
+        demi_put(b, L);
+        for (k = 0; k < 3; k++) {
+            const dem_vec3 e = demi_v(k == 0, k == 1, k == 2);
+            row[k] = locked >> k & 1 ? e : demi_inertia_times(mid, I, e);     /* J = J^T */
+            if (locked >> k & 1) b[k] = want[k];
+            else {                              /* rows of like size */
+                row[k] = demi_scale(row[k], 1/I.x);
+                b[k] /= I.x;
+            }
+        }
+        for (k = 0; k < 3; k++) c[k] = demi_cross(row[(k + 1)%3], row[(k + 2)%3]);
+        det = demi_dot(row[0], c[0]);
+        *spin = demi_scale(demi_add(demi_scale(c[0], b[0]), demi_add(demi_scale(c[1], b[1]),
+                                    demi_scale(c[2], b[2]))), 1/det);
+        mid = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(*spin, h)), q));
     }
+    return demi_inertia_times(mid, I, *spin);
+}
+/* Adds the reaction along three locked axes to f, and to the force r of the rail. inertia: mass, or
+   moment of inertia; g: acceleration besides forces. Returns the power at the mean of u and v,
+   W. */
+static double demi_rail_push(int locked, dem_real inertia, const dem_real *u, const dem_real *v,
+                             dem_real h, const dem_real *g, dem_real *f, dem_real *r) {
+    double power = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        r[k] = 0;
+        if (!(locked >> k & 1)) continue;
+        r[k] = inertia*((v[k] - u[k])/h - g[k]) - f[k];
+        f[k] += r[k];
+        power += (double)r[k]*(double)(u[k] + v[k])/2;
+    }
+    return power;
+}
+/* Adds work to that of a rail, J. */
+static void demi_rail_book(dem_world *w, demi_rail *r, double work) {
+    r->state.work += work;
+    if (!w->desc.ledger) return;
+    w->booked.energy[DEMI_E_WALLS] += work;
+    w->booked.throughput += fabs(work);
+}
+/* Adds the reaction of one rail to its body i. */
+static void demi_rail_act(dem_world *w, demi_rail *r, int i) {
+    const int stepping = w->stage.forces_valid, locked = r->state.desc.axes;
+    const int predicts = demi_integrator_of(w)->predicts, halves = stepping && predicts;
+    const dem_real h = stepping ? w->clock.dt : w->clock.dt/2;
+    const dem_real kick = predicts ? h : w->clock.dt;       /* of the next step */
+    const demi_lane b = demi_lane_move(w, i);
+    dem_real *torque = w->bodies.torque + 4*i, *u = halves ? b.half : b.v;
+    dem_real v[3], s[3], force[3], moment[3];
+    const dem_real none[3] = {0, 0, 0};
+    const dem_real *spun = stepping && (halves || demi_shape_of(w, i)) ? w->bodies.half_spin + 4*i
+        : w->bodies.spin + 4*i;
+    int k, of;
+    if (!stepping) demi_rail_given(w, r, i);
+    r->at = demi_rail_place(w, r, i);
+    r->seen = demi_at(w->bodies.pos + 4*i);
+    of = demi_rail_wall(w, r);
+    if (of >= 0 && (!stepping || w->walls[of].motion.kind == DEM_MOTION_FIXED))
+        r->on = demi_unrotate(w->walls[of].pose.rotation,
+                              demi_sub(r->at, w->walls[of].pose.position));
+    if (w->bodies.orienting) r->start = demi_quat_at(w->bodies.orient + 4*i);
+    for (k = 0; k < 3; k++) v[k] = u[k] + (b.f[k]*b.inv + b.g[k])*kick;
+    demi_rail_ahead(w, r, i, v, v, s);
+    r->state.power = demi_rail_push(locked, w->bodies.mass[i], u, v, kick, b.g, b.f, force);
+    if (demi_shape_of(w, i) && locked >> 3) {
+        const dem_vec3 L = stepping ? demi_at(w->bodies.angular + 4*i) : demi_angular_of(w, i);
+        const dem_vec3 T = demi_at(torque);
+        const dem_vec3 next = demi_rail_turn(w, i, locked >> 3, s, demi_add(L, demi_scale(T, h)),
+                                             &r->turn);
+        dem_real by[3];
+        demi_put(by, demi_sub(demi_scale(demi_sub(next, L), 1/h), T));
+        demi_put(s, r->turn);
+        for (k = 0; k < 3; k++) {
+            moment[k] = locked >> (3 + k) & 1 ? by[k] : 0;
+            torque[k] += moment[k];
+            r->state.power += (double)moment[k]*(double)(spun[k] + s[k])/2;
+        }
+    } else
+        r->state.power += demi_rail_push(locked >> 3, w->bodies.inv_inertia[i] > 0
+                                         ? 1/w->bodies.inv_inertia[i] : 0, spun, s, kick, none,
+                                         torque, moment);
+    r->state.force = demi_at(force);
+    r->state.torque = demi_at(moment);
+    if (!stepping) return;
+    demi_rail_book(w, r, r->state.power*(double)w->clock.dt);
+}
+/* Adds the reactions of all rails, once all forces are known. */
+static void demi_rails_act(dem_world *w) {
+    int k;
+    for (k = 0; k < w->rail_count && w->clock.dt > 0; k++) {
+        const int i = demi_rail_body(w, &w->rails[k]);
+        dem_rail_state *state = &w->rails[k].state;
+        if (i >= 0) demi_rail_act(w, &w->rails[k], i);
+        else {
+            state->force = state->torque = demi_v(0, 0, 0);
+            state->power = 0;
+        }
+    }
+}
+/* Rotates body i from its orientation at the start of the step by the vector `by`, rad. full: its
+   spin at the end, along locked axes. */
+static void demi_rail_rotate(dem_world *w, const demi_rail *r, int i, const dem_real *by,
+                             const dem_real *full) {
+    const dem_quat q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_at(by)), r->start));
+    const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+    const int shaped = demi_shape_of(w, i) != 0;
+    dem_real spin[3], turn[3];
+    int e;
+    demi_quat_put(w->bodies.orient + 4*i, q);
+    if (shaped)
+        demi_put(spin, demi_spin_of(q, demi_add(demi_at(w->bodies.angular + 4*i),
+            demi_scale(demi_at(w->bodies.torque + 4*i), w->clock.dt/2)),
+            demi_v(1/I.x, 1/I.y, 1/I.z)));
+    demi_put(turn, r->turn);
+    for (e = 0; e < 3; e++) {
+        if (shaped) w->bodies.half_spin[4*i + e] = turn[e];
+        if (r->state.desc.axes >> (3 + e) & 1) w->bodies.spin[4*i + e] = full[e];
+        else if (shaped) w->bodies.spin[4*i + e] = spin[e];
+    }
+    if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
+}
+/* After the move of a step: rotates bodies that are not spheres about free axes alone. */
+static void demi_rails_move(dem_world *w) {
+    int k;
+    for (k = 0; k < w->rail_count; k++) {
+        const demi_rail *r = &w->rails[k];
+        const int i = demi_rail_body(w, r);
+        dem_real by[3], turn[3];
+        if (i < 0 || !demi_shape_of(w, i) || !(r->state.desc.axes >> 3)) continue;
+        demi_put(by, demi_scale(r->turn, w->clock.dt));
+        demi_put(turn, r->turn);
+        demi_rail_rotate(w, r, i, by, turn);
+    }
+}
+/* Returns the rotation from one pose to another as a vector, rad. */
+static dem_vec3 demi_pose_turned(const dem_pose *from, const dem_pose *to) {
+    double R[3][3], size, angle;
+    dem_quat q;
+    int i, j;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            R[i][j] = (double)demi_dot(demi_at(to->rotation + 3*i), demi_at(from->rotation + 3*j));
+    q = demi_quat_of(R);
+    size = sqrt((double)(q.x*q.x + q.y*q.y + q.z*q.z));
+    angle = 2*demi_atan2(size, fabs((double)q.w));
+    return demi_scale(demi_v(q.x, q.y, q.z),
+                      (dem_real)(size > 0 ? (q.w < 0 ? -angle : angle)/size : 0));
+}
+/* Carries body i with its wall, which moves from one pose by another in the middle of the step to a
+   third. Returns the change of its mean velocity, m/s. */
+static dem_real demi_rail_carry(dem_world *w, demi_rail *r, int i, const dem_pose *from,
+                                const dem_pose *mid, const dem_pose *to) {
+    const int locked = r->state.desc.axes, halves = demi_integrator_of(w)->predicts;
+    const demi_periods p = demi_periods_of(w);
+    const dem_vec3 off = demi_sub(r->at, r->seen), wrapped = demi_sub(off, demi_nearest(&p, off));
+    const dem_vec3 own = demi_scale(r->state.desc.spin, w->clock.dt);
+    const dem_vec3 gone = demi_rail_strays(w, r, from, w->bodies.half_vel + 4*i);
+    const dem_vec3 after = demi_scale(gone, DEM_R(0.5)), end = demi_rail_ride(r, gone, from, to, 1);
+    dem_real *half = w->bodies.half_vel + 4*i, *full = w->bodies.vel + 4*i;
+    dem_real x[3], free[3], stray[3], m[3], v[3], s[3], force[3], by[3], most = 0;
+    double work = 0;
+    int k;
+    demi_rail_wants(r, mid, demi_rail_ride(r, gone, from, mid, DEM_R(0.5)), m, s);
+    demi_rail_wants(r, to, end, v, s);
+    demi_put(x, demi_sub(end, wrapped));
+    demi_put(free, demi_sub(demi_add(r->at, demi_scale(demi_at(half), w->clock.dt)),
+                            demi_sub(end, after)));
+    demi_put(stray, after);
+    demi_put(by, demi_add(demi_pose_turned(from, to), own));
+    demi_put(force, r->state.force);
+    for (k = 0; k < 3; k++) {
+        const dem_real was = halves ? half[k] : full[k], now = halves ? m[k] : v[k];
+        if (!(locked >> (3 + k) & 1)) by[k] = w->bodies.half_spin[4*i + k]*w->clock.dt;
+        if (!(locked >> k & 1)) { stray[k] = free[k]; continue; }
+        work += (double)((now - was)*(w->bodies.mass[i]*(was + now) + force[k]*w->clock.dt))/2;
+        most = DEMI_MAX(most, DEMI_ABS(m[k] - half[k]));
+        w->bodies.pos[4*i + k] = x[k];
+        half[k] = m[k];
+        full[k] = v[k];
+    }
+    r->on = demi_add(r->on, demi_add(demi_unrotate(from->rotation, after),
+                                     demi_unrotate(to->rotation, demi_at(stray))));
+    demi_rail_book(w, r, work);
+    if (locked >> 3 && (demi_shape_of(w, i) || w->desc.orientations))
+        demi_rail_rotate(w, r, i, by, s);
+    else for (k = 0; k < 3; k++) if (locked >> (3 + k) & 1) w->bodies.spin[4*i + k] = s[k];
+    return most;
+}
+/* Carries all bodies on rails of wall `of`. */
+static void demi_rails_carry(dem_world *w, int of, const dem_pose *mid, const dem_pose *to) {
+    dem_real most = 0;
+    int k;
+    for (k = 0; k < w->rail_count; k++) {
+        demi_rail *r = &w->rails[k];
+        const int i = demi_rail_wall(w, r) == of ? demi_rail_body(w, r) : -1;
+        dem_real change = 0;
+        if (i >= 0) change = demi_rail_carry(w, r, i, &w->walls[of].pose, mid, to);
+        most = DEMI_MAX(most, change);
+    }
+    w->margin.step_gone += (double)(most*w->clock.dt);
+    w->margin.last_change += (double)most;
+}
+/* Returns the number of rails whose bodies still exist. */
+static int demi_rails_in_force(const dem_world *w) {
+    int k, n = 0;
+    for (k = 0; k < w->rail_count; k++) n += demi_body_find(w, w->rails[k].body) >= 0;
     return n;
 }
-/* Starts a measurement with `now` threads, which may be `best`. */
-static void demi_crew_try(demi_crew *c, int now) {
-    c->now = now;
-    c->steps = 0;
-    c->sum = 0;
-}
-/* Measures the step and decides how many threads take the next one. */
-static void demi_crew_end(dem_world *w) {
-    demi_crew *c = &w->crew;
-    const double took = demi_crew_varies(w) ? demi_clock() - c->begun : 0;
-    const int first = !(c->cost > 0), trial = c->now != c->best;
-    double lost;
-    if (!demi_crew_varies(w)) return;
-    if (!trial) c->since += took;
-    if (w->clock.rebuilds != c->rebuilds) return;
-    c->sum += took;
-    c->steps++;
-    lost = c->sum - c->steps*c->cost;
-    if (trial) {
-        const int worse = lost > 4*c->cost;
-        if (!worse && c->steps < DEMI_CREW_STEPS) return;
-        c->wait = DEMI_MAX(20*lost, DEMI_MAX(400*c->cost, DEMI_MIN(2*c->wait, 10)));
-        if (!worse && c->sum < 0.97*c->steps*c->cost) {
-            c->best = c->now;
-            c->cost = c->sum/c->steps;
-            c->wait = 0;                        /* perhaps farther the same way */
-        }
-        c->since = 0;
-        demi_crew_try(c, c->best);
-    } else {
-        const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
-        if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
-        c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
-        demi_crew_try(c, first || slow || c->since > c->wait
-                      ? demi_crew_other(c, w->desc.threads, slow) : c->best);
+/* Removes the rails of bodies that were removed, and that of `body`. */
+static void demi_rails_drop(dem_world *w, dem_body body) {
+    int k, left = 0;
+    for (k = 0; k < w->rail_count; k++) {
+        const dem_body b = w->rails[k].body;
+        if (w->bodies.slot_generation[b.slot - 1] == b.generation &&
+            (b.slot != body.slot || b.generation != body.generation))
+            w->rails[left++] = w->rails[k];
     }
+    w->rail_count = left;
+}
+DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
+    dem_real v[3], s[3], own[6];
+    dem_body_state state;
+    demi_rail *r;
+    int i, k, of;
+    if (demi_null(w, __func__, d, "desc")) return DEM_ERROR_ARGUMENT;
+    i = demi_body_index(w, __func__, body);
+    if (i < 0 || demi_rows_check(w, __func__, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
+        return DEM_ERROR_ARGUMENT;
+    if (!demi_response_is(w, DEMI_LASTING))
+        return demi_refuse(w, __func__, "contacts of this world are impulses, whose solver has one "
+                           "mass per body for all axes; use DEM_RESPONSE_SPRINGS, or joints "
+                           "(dem_joint_add)");
+    if (w->bodies.inv_mass[i] <= 0)
+        return demi_refuse(w, __func__, "body %u is fixed, so all its axes are locked; set `fixed` "
+                           "to 0 with dem_body_set", (unsigned)body.slot);
+    if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
+        return demi_refuse(w, __func__, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y "
+                           "of all bodies; leave them out", d->axes);
+    if ((d->wall.id && demi_wall_find(w, __func__, d->wall) < 0) ||
+        (d->axes && w->cell.on && demi_cell_bars(w, __func__, DEMI_CELL_RAILS)))
+        return DEM_ERROR_ARGUMENT;
+    if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, __func__);
+    demi_rails_drop(w, body);
+    if (!d->axes) { demi_scene_changed(w); return DEM_OK; }
+    r = &w->rails[w->rail_count];
+    memset(r, 0, sizeof *r);
+    r->body = body;
+    r->state.desc = *d;
+    r->at = r->seen = demi_at(w->bodies.pos + 4*i);
+    of = demi_rail_wall(w, r);
+    demi_rail_wants(r, of < 0 ? 0 : &w->walls[of].pose, r->at, v, s);
+    dem_body_get(w, body, &state);
+    demi_put(own, state.velocity);
+    demi_put(own + 3, state.spin);
+    for (k = 0; k < 6; k++) if (d->axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
+    state.velocity = demi_at(own);
+    state.spin = demi_at(own + 3);
+    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, __func__);
+    w->rail_count++;
+    return DEM_OK;
+}
+DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_rail_state *state) {
+    const demi_rail *r;
+    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_body_index((dem_world *)w, __func__, body) < 0) return DEM_ERROR_ARGUMENT;
+    r = demi_rail_of(w, body);
+    if (!r)
+        return demi_refuse(w, __func__, "body %u has no rail; set one with dem_body_rail_set",
+                           (unsigned)body.slot);
+    *state = r->state;
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>growth
+   Bodies that change their size while a world runs: dem_body_radius_set, and desc.growth. All
+   lengths of a body scale with its radius; mass and moments of inertia follow from the density of
+   its material. Its velocity, spin and contact histories stay. New lists are built, so everything
+   that depends on radii or masses follows: coefficients, reach, skin, tessellations, time step.
+   The ledger. The kinetic energy that new mass has, or that lost mass takes along, counts as
+   inserted. The energy that springs gain or lose because radii change is `growth`, as with every
+   change of the scene: forces are computed twice at the same positions, before and after, and the
+   ledger takes the difference. It is the work of the force on the surface that grows.
+   Owns clock.grown and w->grown.
+   --------------------------------------------------------------------------------------------- */
+
+/* As demi_mass_bad, for body i with this radius, m. */
+static int demi_size_bad(const dem_world *w, int i, dem_real radius, double *mass) {
+    const demi_shape *shape = demi_shape_of(w, i);
+    return demi_mass_bad(w, w->bodies.material[i] - 1, shape ? w->bodies.shape[i] - 1 : -1,
+                         shape ? radius/shape->radius : radius, mass);
+}
+/* Gives body i another radius, m, and mass, kg. The list must have been dropped. */
+static void demi_body_resize(dem_world *w, int i, dem_real radius, double mass) {
+    const demi_shape *shape = demi_shape_of(w, i);
+    const int fixed = w->bodies.inv_mass[i] <= 0;
+    const double before = demi_body_energy(w, i);
+    w->bodies.pos[4*i + 3] = radius;
+    w->bodies.mass[i] = (dem_real)mass;
+    w->bodies.inv_mass[i] = fixed ? 0 : (dem_real)(1/mass);
+    w->bodies.inv_inertia[i] = fixed || shape ? 0
+        : (dem_real)(1/demi_sphere_inertia(w, mass, (double)radius));
+    if (w->bodies.orienting) {
+        demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
+        if (shape) w->bodies.moment[4*i + 3] = shape->moment_arm*demi_scale_of(w, i, shape);
+        demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
+    }
+    w->booked.inserted += demi_body_energy(w, i) - before;
+}
+DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real radius) {
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_body_index(w, __func__, body);
+    double mass;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (demi_size_bad(w, i, radius, &mass))
+        return demi_refuse(w, __func__, "the radius of body %u is %g m and its mass %g kg, must be "
+                           "> 0 and neither too small nor too large to calculate with in %s "
+                           "precision; lengths are in metres: check the unit", (unsigned)body.slot,
+                           (double)radius, mass, DEMI_SINGLE ? "single" : "double");
+    demi_finish(w);                             /* the open half kick belongs to the old mass */
+    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
+    demi_body_resize(w, i, radius, mass);
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+/* Asks desc.growth for the rates of all bodies and applies them up to the end of the coming step.
+   Radii change after all rates are known, so that no rate depends on the order of bodies.
+   w->grown receives 1 if a radius has changed, 3 if one has become smaller. */
+static dem_result demi_member_grow(dem_world *w) {
+    const double passed = w->clock.time + (double)w->clock.dt - w->clock.grown;
+    const int n = w->bodies.count;
+    dem_real *radius = (dem_real *)demi_alloc(w, (size_t)n + 1, sizeof *radius);
+    dem_result result = radius ? DEM_OK : demi_no_memory(w, "dem_world_step");
+    double mass = 0;
+    int i, grown = 0;
+    demi_finish(w);                             /* the function receives complete velocities, */
+    for (i = 0; i < n && result == DEM_OK; i++) {   /* and the open half kick the old masses */
+        const dem_body id = dem_body_id_get(w, i);
+        const dem_real r = radius[i] = w->bodies.pos[4*i + 3];
+        dem_body_state state;
+        dem_real rate;
+        if (demi_is_ghost(w, i) || dem_body_get(w, id, &state) != DEM_OK) continue;
+        DEMI_USER(w, "a step", 1,
+                  rate = w->desc.growth(&state, id, w->clock.time, w->desc.growth_user))
+        radius[i] = r + (dem_real)((double)rate*passed);
+        if (rate < 0 || rate > 0 || !demi_finite(rate)) grown |= rate < 0 ? 3 : 1;
+        if (demi_size_bad(w, i, radius[i], &mass))
+            result = demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: body %u grows "
+                               "from %g m to %g m at %g m/s (desc.growth), must stay > 0 and "
+                               "finite; return 0 below the smallest radius, or remove the body",
+                               (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[i] + 1,
+                               (double)r, (double)radius[i], (double)rate);
+    }
+    if (result == DEM_OK && grown) {
+        if (!demi_list_drop(w)) result = demi_no_memory(w, "dem_world_step");
+    }
+    for (i = 0; i < n && result == DEM_OK && grown; i++)
+        if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
+            !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
+    demi_free(w, radius);
+    w->grown = grown;
+    return result;
+}
+/* Changes the radii before a step, if that is due, to those at its end. The time step is then
+   chosen again if a body has become smaller: a growing one allows a longer step. */
+static dem_result demi_radii_grow(dem_world *h) {
+    const double until = h->clock.time + (double)h->clock.dt, passed = until - h->clock.grown;
+    double grown = 0;
+    dem_result result;
+    int k;
+    if (!h->desc.growth || !(passed > 0) || passed < (double)h->desc.growth_interval*(1 - 1e-9))
+        return DEM_OK;
+    result = demi_all(h, demi_member_grow);
+    for (k = 0; k < demi_members(h); k++)
+        grown = DEMI_MAX(grown, demi_member(h, k)->grown);
+    if (result == DEM_OK) result = demi_agree(h, &grown, 1);
+    if (result != DEM_OK) return result;
+    h->clock.grown = until;
+    for (k = 0; k < demi_members(h); k++) {
+        dem_world *w = demi_member(h, k);
+        w->clock.grown = until;
+        if (!(grown > 0)) continue;
+        w->stage.forces_valid = w->stage.primed = 0;
+    }
+    if (!(grown > 0)) return DEM_OK;
+    h->stage.list_valid = h->stage.forces_valid = h->stage.primed = 0;
+    h->clock.press_since = h->clock.steps;      /* growing bodies press each other */
+    if (grown > 2) demi_dt_outdated(h);
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -29774,36 +30723,6 @@ static void demi_crew_end(dem_world *w) {
    press_whole, pressed). Reads everything else. A head (h) considers all members of its team.
    --------------------------------------------------------------------------------------------- */
 
-/* Returns the largest speed of a wall during its motion, m/s, also before the motion has begun. For
-   a user-defined motion: its present speed. A table is sampled eight times per row. */
-static double demi_pose_speed(const demi_wall *wall) {
-    const dem_motion *m = &wall->motion;
-    dem_pose p = wall->pose;
-    switch (m->kind) {
-    case DEM_MOTION_FIXED: return 0;
-    case DEM_MOTION_TRANSLATING: case DEM_MOTION_SERVO: return (double)demi_length(m->velocity);
-    case DEM_MOTION_ROTATING:
-        p.spin = demi_scale(demi_unit(m->axis), m->speed);
-        p.velocity = demi_cross(p.spin, demi_sub(p.position, m->point));
-        return demi_pose_pace(wall, &p);
-    case DEM_MOTION_OSCILLATING:
-        return (2*DEMI_PI*fabs((double)m->frequency) + (m->ramp > 0 ? 1.5/m->ramp : 0))*
-               fabs((double)m->amplitude);
-    case DEM_MOTION_TABLE: {
-        const double end = m->table[m->table_count - 1].time;
-        const int looks = 8*m->table_count;
-        double most = 0;
-        int k;
-        for (k = 0; k <= looks; k++) {
-            demi_wall_pose_at(0, wall, m->start + end*k/looks, &p);
-            most = DEMI_MAX(most, demi_pose_pace(wall, &p));
-        }
-        return most;
-    }
-    default: break;
-    }
-    return demi_pose_pace(wall, &p);
-}
 /* Returns the largest speed of a wall's surface during its motion, m/s. */
 static double demi_motion_speed(const demi_wall *wall) {
     return demi_pose_speed(wall) + (double)demi_length(wall->glide);
@@ -29832,21 +30751,6 @@ static double demi_advise_radius(const dem_world *w, int body) {
    about the same.) */
 static double demi_dt_stable(double omega2, double rate) {
     return 2/(rate + sqrt(rate*rate + omega2) + 1e-300);
-}
-/* A contact linearized about an overlap, for small motions. Stiffness: normal and tangential, N/m,
-   rolling, N m. Damping: likewise, N s/m and N m s. */
-typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
-/* Returns k and c of the built-in normal law at an overlap, m, during loading; the rest is 0. */
-static demi_stiffness demi_stiffness_normal(const dem_world *w, const dem_real *coef,
-                                            double overlap) {
-    demi_stiffness s = {0, 0, 0, 0, 0, 0};
-    s.k = (double)coef[DEMI_KN];
-    s.c = (double)coef[DEMI_CN];
-    if (demi_normal_is(w, DEMI_HERTZIAN)) {
-        s.k *= 1.5*sqrt(overlap);
-        s.c *= sqrt(sqrt(overlap));
-    }
-    return s;
 }
 /* Returns the derivatives of a contact's force with respect to displacement and velocity at an
    overlap (m); the stability of a step depends on them. A user-defined law: desc.law_stiffness. */
@@ -30634,818 +31538,69 @@ static dem_result demi_dt_check(dem_world *h) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>steering
-   New motions of walls, and new velocities of belts, during a run. After most changes of the scene
-   the next step computes all forces again, from the velocities of the full step. A program that
-   leads a wall sets its motion at every step, or every few steps. To make this cheap, only forces
-   of contacts with this wall are computed again: those with the old velocity are subtracted from
-   the forces on grains, those with the new velocity are added. Sums thus differ by rounding. This
-   part writes the motions and surface velocities (`glide`, `glides`) of walls, and the forces and
-   half-step velocities of grains that touch such a wall.
+   >>ahead
+   Half a step ahead, where impulses act: bodies and walls are moved there for the detection of
+   contacts, and back. Writes positions, orientations and spins of bodies, and poses of walls.
    --------------------------------------------------------------------------------------------- */
-
-/* A program leads a wall if at most this number of steps lie between two motions: eight, and half a
-   step for rounding errors of times. */
-#define DEMI_LED 8.5
-
-/* Evaluates a tile of contacts with a wall, adds `sign` times their forces to those of the grains,
-   and updates the half-step velocities of these grains. Contact histories do not change. Empties
-   the tile. */
-static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
-    int q;
-    demi_kept_tile_answer(w, r, t);
-    for (q = 0; q < t->count; q++) {
-        demi_kept *c = t->contact[q];
-        dem_vec3 force, torque;
-        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        c->force = demi_kept_own(t, q, &torque);
-        force = demi_row(t->rows.force, q);
-        torque = demi_row(t->rows.torque[0], q);
-        if (w->desc.planar) force.z = torque.x = torque.y = 0;
-        demi_force_add(w->bodies.force + 4*c->a, demi_scale(force, sign));
-        demi_force_add(w->bodies.torque + 4*c->a, demi_scale(torque, sign));
-        if (w->stage.primed) demi_prime_body(w, c->a);
-    }
-    t->count = t->lifted = t->shaped = 0;
-}
-/* Adds `sign` times the forces of all contacts with a wall to those of the grains. */
-static void demi_steer(dem_world *w, int wall, dem_real sign) {
-    DEMI_ALIGNED demi_kept_tile tile;
-    demi_run run = demi_run_begin(w, 0);
-    int d, k, known;
-    if (!w->desc.law) demi_run_laws(w, &run, 0);
-    demi_kept_tile_begin(&tile, &run, DEMI_TILE);
-    for (d = 0; d < w->domain_count; d++) {
-        known = demi_kept_rows_begin(w, d, w->domains[d].kept);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
-            if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
-            demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
-            if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
-        }
-        if (tile.count) demi_steer_tile(w, &run, &tile, sign);
-        if (!known) w->domains[d].coefs = 0;    /* other contacts have no row yet */
-    }
-}
-/* Call this before the velocity of a wall's surface changes, and demi_wall_after after it. If the
-   forces are valid, the first call subtracts those of the wall's contacts and the second adds them
-   with the new velocity. Otherwise the next step computes all forces again. So it does with
-   impulses, with rails (their reactions depend on these forces) and with laws that exchange
-   user-defined numbers. */
-static void demi_wall_before(dem_world *w, int wall) {
-    demi_finish(w);                             /* the open half kick belongs to the old forces */
-    if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
-        !w->stage.list_valid || w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
-        w->stage.forces_valid = w->stage.primed = 0;
-    else demi_steer(w, wall, -1);
-}
-/* Call this after the velocity of a wall's surface has changed: see demi_wall_before. */
-static void demi_wall_after(dem_world *w, int wall) {
-    if (w->stage.forces_valid) demi_steer(w, wall, 1);
-}
-
-DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
-    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, __func__, id);
-    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
-    if (!wall) return DEM_ERROR_ARGUMENT;
-    if (!demi_place(velocity))
-        return demi_refuse(w, __func__, "velocity of wall %d is (%g, %g, "
-                           "%g) m/s, must be finite and within %g m/s; check how it was computed",
-                           (int)id.id, (double)velocity.x, (double)velocity.y, (double)velocity.z,
-                           DEMI_FARTHEST);
-    if (w->desc.planar && fabs((double)velocity.z) > 0)
-        return demi_refuse(w, __func__, "velocity of wall %d has the z "
-                           "component %g m/s, must be 0 in a planar world, where no grain moves "
-                           "along z", (int)id.id, (double)velocity.z);
-    demi_wall_before(w, i);
-    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
-    wall->glides = demi_dot(velocity, velocity) > 0;
-    demi_wall_after(w, i);
-    demi_built(w, __func__);
-    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
-    return DEM_OK;
-}
-
-/* True if the time step stays right for a wall with a new motion: the wall is not faster than the
-   impacts for which the step was chosen, and moves by less than a tenth of the smallest radius in a
-   step. */
-static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
-    const double v = demi_pose_speed(wall);
-    return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
-        (!(v > 0) || w->desc.dt > 0 || v <= w->clock.assumed_speed);
-}
-/* True if a wall stays where it is when its new motion `to` begins. A rotation may start there with
-   rounding errors. A motion with a phase, by a table or by a function may begin elsewhere. */
-static int demi_wall_stays(const demi_wall *from, const demi_wall *to) {
-    return to->motion.kind == DEM_MOTION_ROTATING ||
-        (!memcmp(&from->pose.position, &to->pose.position, sizeof to->pose.position) &&
-         !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
-}
-/* True if a program leads a wall that stays: its old motion began at most DEMI_LED steps ago, or
-   has yet to begin. */
-static int demi_wall_led(const dem_world *w, const demi_wall *from) {
-    return w->clock.time - from->motion.start <= DEMI_LED*(double)w->clock.dt;
-}
-DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
-    if (demi_null(w, __func__, motion, "motion")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, __func__, id);
-    demi_wall next;
-    const void *rows;
-    void *old;
-    int dropped, remains;
-    dem_result result;
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
-    if (result != DEM_OK) return result;
-    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
-       decides which of its periodic images are at rest relative to it */
-    remains = demi_wall_stays(&w->walls[i], &next) && demi_wall_remains(w, &next, i) &&
-        (!w->repeating || (!demi_motion_turns(&w->walls[i].motion) &&
-                           !demi_motion_turns(&next.motion)));
-    dropped = remains || demi_list_drop(w);
-    rows = dropped ? w->walls[i].motion.table : next.motion.table;
-    memcpy(&old, &rows, sizeof old);
-    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
-    if (!dropped) return demi_no_memory(w, __func__);
-    if (!remains) demi_surfaces_outdated(w);
-    if (!remains || !demi_wall_led(w, &w->walls[i]))
-        w->stage.forces_valid = w->stage.primed = 0;
-    demi_wall_before(w, i);
-    w->walls[i] = next;
-    demi_wall_after(w, i);
-    demi_built(w, __func__);
-    if (!remains || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
-    return DEM_OK;
-}
-
-/* ---------------------------------------------------------------------------------------------
-   >>servo
-   Servo walls (DEM_MOTION_SERVO): before each step the speed of the wall is chosen from the force
-   that grains exert on it, so that the force approaches a target. The wall has no inertia. Owns
-   `servo` of walls; reads their loads and the persistent contacts of the last step. In a team the
-   sums extend over all members, in their order, and the walls of the first member move.
-
-   The law. Let K and C be the sums of normal stiffness and damping over the contacts of the wall, F
-   the present force, T the target, v and u the speeds towards the grains in the coming and in the
-   last step:
-       K dt (v - b u) + C (v - u) = a (T - F),   |v| at most the largest speed,
-   a = DEMI_SERVO_GAIN, b = DEMI_SERVO_KEPT. With C = b = 0 this is the servo of the triaxial cell
-   of YADE, which moves by (1 - damping)(T - F)/K in a step (TriaxialStressController: K is summed
-   over the contacts of the wall), and that of PFC, v = a (T - F)/(k N dt) for N contacts of
-   stiffness k. The terms of C make up for the change of the damping force, C (v - u): without them
-   the servo is unstable from step to step if C > K dt/a. The term of b makes it a PI controller.
-   While the target changes at a rate R, the error is R K dt (1 - b)/(a B) on a bed of stiffness B.
-   Stability. While grains rest, the error of contacts without damping obeys z^2 - (1 + b - a) z + b
-   = 0, whose roots are inside the unit circle if a < 2 + 2 b [Jury]: contacts may be 7 times as
-   stiff as K says, and four times as damped as C says. If grains move, the wall acts on them as a
-   dashpot K dt (1 - b)/a and a mass (b K dt + C) dt/a, which never supply energy. The mass is of
-   the order dt/t_c of that of the grains in contact.
-   --------------------------------------------------------------------------------------------- */
-#define DEMI_SERVO_GAIN 0.5        /* a; below its limit, since K grows with new contacts */
-#define DEMI_SERVO_KEPT 0.9        /* b */
-
-/* Returns the force along the direction of wall `of` that wall i exerts on the grains of w, N; 0 if
-   it is not part of the same piston. first: the world whose walls move. */
-static double demi_servo_force_of(const dem_world *first, const dem_world *w, int of, int i) {
-    const demi_wall *walls = first->walls;
-    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_alike(&walls[i], &walls[of])) return 0;
-    return -(double)demi_dot(w->walls[i].loads.force, demi_unit(walls[of].motion.velocity));
-}
-/* Returns the sum over the piston. */
-static double demi_servo_force(const dem_world *first, const dem_world *w, int of) {
-    double sum = 0;
-    int i;
-    for (i = 0; i < w->wall_count; i++) sum += demi_servo_force_of(first, w, of, i);
-    return sum;
-}
-/* Books the work that follows from a change of the wall's speed, m/s. The step has booked F v dt
-   with the speed before, but half of the impulse F dt acts after the change. */
-static void demi_servo_book(dem_world *w, const dem_world *first, int of, double change) {
-    int i;
-    for (i = 0; i < w->wall_count; i++) {
-        const double work = demi_servo_force_of(first, w, of, i)*change*(double)w->clock.dt/2;
-        w->walls[i].loads.work += work;
-        if (w->desc.ledger) w->booked.energy[DEMI_E_WALLS] += work;
-    }
-}
-/* `part` of `sum` in demi_team: that force, and the sums of stiffness and damping over the contacts
-   of the group, as the built-in laws have them or by desc.law_stiffness. A body that is not a
-   sphere counts with its whole mass, so its damping is an upper bound. */
-enum { DEMI_SERVO_FORCE, DEMI_SERVO_STIFFNESS, DEMI_SERVO_DAMPING, DEMI_SERVO_SUMS };
-static void demi_servo_part(const dem_world *w, int of, double *out) {
-    const dem_world *first = w->team ? w->team->members[0] : w;
-    const demi_wall *walls = first->walls;
-    int d;
-    out[DEMI_SERVO_FORCE] = demi_servo_force(first, w, of);
-    out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
-        for (; c < end && w->domains[d].walls; c++) {
-            const double slope = (double)c->slope;
-            dem_real coef[DEMI_COEFS], root[2];
-            demi_stiffness s;
-            /* a body that has changed slab has left its contacts there until forces are computed */
-            if (c->b >= 0 || demi_is_ghost(w, c->a) ||
-                !demi_walls_alike(&walls[c->wall], &walls[of]) ||
-                (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
-            demi_kept_coefs(w, c, coef, root);
-            coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
-            s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
-            if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
-            if (w->desc.law && w->desc.law_stiffness > 0) s.k = (double)w->desc.law_stiffness;
-            out[DEMI_SERVO_STIFFNESS] += s.k*slope*slope*(double)c->lift;
-            out[DEMI_SERVO_DAMPING] += s.c*slope*(double)c->share;
-        }
-    }
-}
-/* Sums over all members, see `sum` of demi_team. */
-static dem_result demi_servo_sum(dem_world *h, int of, double *sums) {
-    if (h->team) return h->team->sum(h, demi_servo_part, of, sums, DEMI_SERVO_SUMS);
-    demi_servo_part(h, of, sums);
-    return DEM_OK;
-}
-/* Chooses the speed of wall w for the step that begins now. */
-static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double *sums) {
-    const dem_motion *m = &wall->motion;
-    const double dt = (double)h->clock.dt, most = (double)demi_length(m->velocity);
-    const double far = m->travel > 0 ? (double)m->travel : DEMI_FARTHEST;
-    dem_servo *s = &wall->servo;
-    double push, gives;
-    s->travel += s->speed*(h->clock.time - s->time);
-    s->time = h->clock.time;
-    s->target = demi_servo_target(m, s->time);
-    s->force = sums[DEMI_SERVO_FORCE];
-    s->stiffness = sums[DEMI_SERVO_STIFFNESS];
-    s->damping = sums[DEMI_SERVO_DAMPING];
-    push = DEMI_SERVO_GAIN*(s->target - s->force) +
-        (DEMI_SERVO_KEPT*s->stiffness*dt + s->damping)*s->speed;
-    gives = s->stiffness*dt + s->damping;
-    s->speed = fabs(push) < most*gives ? push/gives : push > 0 ? most : push < 0 ? -most : 0;
-    if (fabs(s->travel + s->speed*dt) > far)
-        s->speed = ((s->speed > 0 ? far : -far) - s->travel)/dt;
-}
-/* Returns the first wall of the piston of wall i. */
-static int demi_servo_leader(const dem_world *first, int i) {
-    int k = 0;
-    while (k < i && (first->walls[k].kind == DEMI_WALL_NONE ||
-                     !demi_walls_alike(&first->walls[k], &first->walls[i]))) k++;
-    return k;
-}
-/* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */
-static dem_result demi_servos_lead(dem_world *h) {
-    dem_world *first = demi_member(h, 0);
-    double sums[DEMI_SERVO_SUMS], before;
-    dem_result result = DEM_OK;
-    int i, k;
-    for (i = 0; i < first->wall_count && result == DEM_OK; i++) {
-        demi_wall *wall = &first->walls[i];
-        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_SERVO ||
-            h->clock.time < wall->motion.start) continue;
-        k = demi_servo_leader(first, i);
-        if (k != i) { wall->servo = first->walls[k].servo; continue; }
-        result = demi_servo_sum(h, i, sums);
-        if (result != DEM_OK) break;
-        before = wall->servo.speed;
-        demi_servo_choose(h, wall, sums);
-        for (k = 0; k < demi_members(h); k++)
-            demi_servo_book(demi_member(h, k), first, i, wall->servo.speed - before);
-    }
-    return result;
-}
-/* Returns the state of a servo wall at the present time. */
-static dem_servo demi_servo_now(const dem_world *w, int wall) {
-    const dem_motion *m = &w->walls[wall].motion;
-    dem_servo s = w->walls[wall].servo;
-    s.travel += w->clock.time > s.time ? s.speed*(w->clock.time - s.time) : 0;
-    s.target = w->clock.time < m->start ? 0 : demi_servo_target(m, w->clock.time);
-    s.force = demi_servo_force(w, w, wall);
-    return s;
-}
-DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_servo *servo) {
-    int i;
-    if (demi_null_look(world, __func__, servo, "servo")) return DEM_ERROR_ARGUMENT;
-    i = demi_wall_find((dem_world *)world, __func__, id);
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
-        return demi_refuse(world, __func__, "the motion of wall %d is not "
-                           "DEM_MOTION_SERVO; set it with dem_wall_motion_set", (int)id.id);
-    *servo = demi_servo_now(world, i);
-    return DEM_OK;
-}
-
-/* ---------------------------------------------------------------------------------------------
-   >>rails
-   Bodies whose axes are locked (dem_body_rail_set). When all forces of a step are known, the
-   reaction of each rail is added to the force and torque of its body. It is such that the next kick
-   gives the prescribed velocity in the middle of the next step along locked axes, whatever the
-   integrator. Owns the rails; adds to forces and torques of bodies, and rotates bodies that are not
-   spheres about free axes.
-   Translation and spheres: r = m (v - u)/h - f - m g, where u is the velocity of the last half
-   step, v that of the next one and h their distance in time. Other shapes: the spin w of the next
-   step obeys w = prescribed along locked axes and (J w) = L + T h along free ones, with the inertia
-   J of the middle of that step. The body then rotates with w for the whole step, so the axis does
-   not wander: its own free rotation would also turn about locked axes.
-   A rail of a wall. The body is carried by the rigid motion of the wall between its two poses, so
-   its path along locked axes is that of a point of the wall, for any step and integrator. Motion
-   relative to the wall, with the velocity of the rail and along free axes, is split: half before
-   the wall moves, half after. Velocities are those of the surface: v in the middle of the step,
-   or at its end with integrators that have no half kick, and the predicted one at its end. The
-   poses of the next step are known before it, except of servo walls, whose speed is taken as
-   constant; demi_rails_carry books what the change of their speed adds.
-   --------------------------------------------------------------------------------------------- */
-#define DEMI_OF dem_rail_desc
-static const demi_field_row demi_rail_fields[] = {
-    DEMI_LIMITED(DEMI_OF, axes, 'i', DEMI_FROM, DEM_RAIL_ALL, ""),
-    DEMI_LIMITED(DEMI_OF, velocity, 'v', DEMI_ANY, DEMI_FARTHEST, "m/s"),
-    DEMI_LIMITED(DEMI_OF, spin, 'v', DEMI_ANY, DEMI_FARTHEST, "rad/s"),
-    DEMI_ROW(DEMI_OF, wall, 'i'), DEMI_ROW_END};
-#undef DEMI_OF
-/* Returns the index of the body of a rail; -1 if it was removed or is fixed. */
-static int demi_rail_body(const dem_world *w, const demi_rail *r) {
-    const uint32_t slot = r->body.slot - 1;
-    const int i = w->bodies.slot_generation[slot] == r->body.generation
-        ? w->bodies.slot_index[slot] : -1;
-    return i >= 0 && w->bodies.inv_mass[i] > 0 ? i : -1;
-}
-/* The position of body i, with a rail, as if its path had crossed no periodic face, m. */
-static dem_vec3 demi_rail_place(const dem_world *w, const demi_rail *r, int i) {
-    const demi_periods p = demi_periods_of(w);
-    return demi_add(r->at, demi_nearest(&p, demi_sub(demi_at(w->bodies.pos + 4*i), r->at)));
-}
-/* Between two steps only dem_body_set moves a body. The coordinates that it has changed count as
-   given, not as those of an image across a periodic face. */
-static void demi_rail_given(const dem_world *w, demi_rail *r, int i) {
-    const demi_periods p = demi_periods_of(w);
-    const dem_vec3 x = demi_at(w->bodies.pos + 4*i);
-    dem_real by[3], now[3], at[3];
-    int k;
-    demi_put(by, demi_nearest(&p, demi_sub(x, r->seen)));
-    demi_put(now, x);
-    demi_put(at, demi_rail_place(w, r, i));
-    for (k = 0; k < 3; k++)                     /* wrapping leaves a rounding error */
-        if (DEMI_ABS(by[k]) > DEM_R(1e-6)*w->bodies.pos[4*i + 3]) at[k] = now[k];
-    r->at = demi_at(at);
-}
-/* Returns the index of the wall that a rail follows; -1 if there is none. */
-static int demi_rail_wall(const dem_world *w, const demi_rail *r) {
-    const dem_wall wall = r->state.desc.wall;
-    return wall.id && demi_wall_there(w, wall) ? demi_wall_place(wall) : -1;
-}
-/* Gives the velocity and spin that a rail prescribes at x in a pose of its wall, or without a wall
-   (pose null); of axes that are not locked, any numbers. */
-static void demi_rail_wants(const demi_rail *r, const dem_pose *pose, dem_vec3 x, dem_real *v,
-                            dem_real *s) {
-    const dem_rail_desc *d = &r->state.desc;
-    demi_put(v, pose ? demi_add(d->velocity, demi_surface_at(pose, x)) : d->velocity);
-    demi_put(s, pose ? demi_add(d->spin, pose->spin) : d->spin);
-}
-/* Returns by how much a body moves relative to its wall in a step, m. v: its mean velocity along
-   free axes. */
-static dem_vec3 demi_rail_strays(const dem_world *w, const demi_rail *r, const dem_pose *from,
-                                 const dem_real *v) {
-    dem_real by[3], flow[3];
-    int k;
-    demi_put(by, r->state.desc.velocity);
-    demi_put(flow, demi_surface_at(from, r->at));
-    for (k = 0; k < 3; k++) if (!(r->state.desc.axes >> k & 1)) by[k] = v[k] - flow[k];
-    return demi_scale(demi_at(by), w->clock.dt);
-}
-/* Returns where a body is after `part` of a step, 1/2 or 1, in which its wall moves from one pose
-   to another, m. gone: see demi_rail_strays. */
-static dem_vec3 demi_rail_ride(const demi_rail *r, dem_vec3 gone, const dem_pose *from,
-                               const dem_pose *to, dem_real part) {
-    const dem_vec3 half = demi_unrotate(from->rotation, demi_scale(gone, DEM_R(0.5)));
-    return demi_add(demi_add(to->position, demi_rotate(to->rotation, demi_add(r->on, half))),
-                    demi_scale(gone, part - DEM_R(0.5)));
-}
-/* Gives the velocity and spin that a rail will prescribe for body i in the next step. drift: its
-   mean velocity then along free axes. */
-static void demi_rail_ahead(const dem_world *w, const demi_rail *r, int i, const dem_real *drift,
-                            dem_real *v, dem_real *s) {
-    const int of = demi_rail_wall(w, r), halves = demi_integrator_of(w)->predicts;
-    const demi_wall *wall = of < 0 ? 0 : &w->walls[of];
-    dem_pose ahead;
-    if (!wall) { demi_rail_wants(r, 0, r->at, v, s); return; }
-    ahead = wall->pose;
-    if (wall->motion.kind != DEM_MOTION_FIXED)
-        demi_wall_pose_at(w, wall, w->clock.time + (double)w->clock.dt/(halves ? 2 : 1), &ahead);
-    if (!demi_pose_sane(&ahead)) ahead = wall->pose;        /* the step will fail */
-    demi_rail_wants(r, &ahead, demi_rail_ride(
-        r, demi_rail_strays(w, r, &wall->pose, drift), &wall->pose, &ahead,
-        halves ? DEM_R(0.5) : 1), v, s);
-    if (!halves && demi_shape_of(w, i))                     /* these rotate with the mean spin */
-        demi_put(s, demi_add(demi_at(s), demi_scale(demi_sub(wall->pose.spin, ahead.spin),
-                                                    DEM_R(0.5))));
-}
-/* Returns J x for a body with orientation q and principal moments I. */
-static dem_vec3 demi_inertia_times(dem_quat q, dem_vec3 I, dem_vec3 x) {
-    const dem_vec3 m = dem_quat_unrotate(q, x);
-    return dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
-}
-/* Solves for the spin w of the next step of a body that is not a sphere, see above. L: its angular
-   momentum without reaction; locked: bit k: w_k is want[k]. Returns J w. */
-static dem_vec3 demi_rail_turn(const dem_world *w, int i, int locked, const dem_real *want,
-                               dem_vec3 L, dem_vec3 *spin) {
-    const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
-    const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+/* Contacts are detected half a step ahead, where the present velocities carry the bodies. Impulses
+   and force fields act there, so that a step is symmetric in time and of second order. */
+enum { DEMI_AHEAD = 1024 };                     /* bodies that a thread takes at a time */
+/* Moves run `index` of the bodies half a step ahead; last_pos and last_orient keep the present
+   positions and orientations. */
+static void demi_some_ahead(dem_world *w, int index) {
+    const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
     const dem_real h = w->clock.dt/2;
-    dem_quat mid = q;
-    int pass, k;
-    for (pass = 0; pass < 3; pass++) {
-        dem_vec3 row[3], c[3];
-        dem_real b[3], det;
-        demi_put(b, L);
-        for (k = 0; k < 3; k++) {
-            const dem_vec3 e = demi_v(k == 0, k == 1, k == 2);
-            row[k] = locked >> k & 1 ? e : demi_inertia_times(mid, I, e);     /* J = J^T */
-            if (locked >> k & 1) b[k] = want[k];
-            else {                              /* rows of like size */
-                row[k] = demi_scale(row[k], 1/I.x);
-                b[k] /= I.x;
-            }
-        }
-        for (k = 0; k < 3; k++) c[k] = demi_cross(row[(k + 1)%3], row[(k + 2)%3]);
-        det = demi_dot(row[0], c[0]);
-        *spin = demi_scale(demi_add(demi_scale(c[0], b[0]), demi_add(demi_scale(c[1], b[1]),
-                                    demi_scale(c[2], b[2]))), 1/det);
-        mid = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(*spin, h)), q));
-    }
-    return demi_inertia_times(mid, I, *spin);
+    const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
+    int i, k;
+    memcpy(w->bodies.last_pos + first, w->bodies.pos + first, size);
+    for (i = begin; i < end; i++)
+        for (k = 4*i; k < 4*i + 3 && w->bodies.went[i]; k++)
+            w->bodies.pos[k] += w->bodies.vel[k]*h;
+    if (!w->bodies.orienting) return;
+    memcpy(w->bodies.last_orient + first, w->bodies.orient + first, size);
+    demi_orient_move(w, 0, begin, end);
 }
-/* Adds the reaction along three locked axes to f, and to the force r of the rail. inertia: mass, or
-   moment of inertia; g: acceleration besides forces. Returns the power at the mean of u and v,
-   W. */
-static double demi_rail_push(int locked, dem_real inertia, const dem_real *u, const dem_real *v,
-                             dem_real h, const dem_real *g, dem_real *f, dem_real *r) {
-    double power = 0;
-    int k;
-    for (k = 0; k < 3; k++) {
-        r[k] = 0;
-        if (!(locked >> k & 1)) continue;
-        r[k] = inertia*((v[k] - u[k])/h - g[k]) - f[k];
-        f[k] += r[k];
-        power += (double)r[k]*(double)(u[k] + v[k])/2;
-    }
-    return power;
-}
-/* Adds work to that of a rail, J. */
-static void demi_rail_book(dem_world *w, demi_rail *r, double work) {
-    r->state.work += work;
-    if (!w->desc.ledger) return;
-    w->booked.energy[DEMI_E_WALLS] += work;
-    w->booked.throughput += fabs(work);
-}
-/* Adds the reaction of one rail to its body i. */
-static void demi_rail_act(dem_world *w, demi_rail *r, int i) {
-    const int stepping = w->stage.forces_valid, locked = r->state.desc.axes;
-    const int predicts = demi_integrator_of(w)->predicts, halves = stepping && predicts;
-    const dem_real h = stepping ? w->clock.dt : w->clock.dt/2;
-    const dem_real kick = predicts ? h : w->clock.dt;       /* of the next step */
-    const demi_lane b = demi_lane_move(w, i);
-    dem_real *torque = w->bodies.torque + 4*i, *u = halves ? b.half : b.v;
-    dem_real v[3], s[3], force[3], moment[3];
-    const dem_real none[3] = {0, 0, 0};
-    const dem_real *spun = stepping && (halves || demi_shape_of(w, i)) ? w->bodies.half_spin + 4*i
-        : w->bodies.spin + 4*i;
-    int k, of;
-    if (!stepping) demi_rail_given(w, r, i);
-    r->at = demi_rail_place(w, r, i);
-    r->seen = demi_at(w->bodies.pos + 4*i);
-    of = demi_rail_wall(w, r);
-    if (of >= 0 && (!stepping || w->walls[of].motion.kind == DEM_MOTION_FIXED))
-        r->on = demi_unrotate(w->walls[of].pose.rotation,
-                              demi_sub(r->at, w->walls[of].pose.position));
-    if (w->bodies.orienting) r->start = demi_quat_at(w->bodies.orient + 4*i);
-    for (k = 0; k < 3; k++) v[k] = u[k] + (b.f[k]*b.inv + b.g[k])*kick;
-    demi_rail_ahead(w, r, i, v, v, s);
-    r->state.power = demi_rail_push(locked, w->bodies.mass[i], u, v, kick, b.g, b.f, force);
-    if (demi_shape_of(w, i) && locked >> 3) {
-        const dem_vec3 L = stepping ? demi_at(w->bodies.angular + 4*i) : demi_angular_of(w, i);
-        const dem_vec3 T = demi_at(torque);
-        const dem_vec3 next = demi_rail_turn(w, i, locked >> 3, s, demi_add(L, demi_scale(T, h)),
-                                             &r->turn);
-        dem_real by[3];
-        demi_put(by, demi_sub(demi_scale(demi_sub(next, L), 1/h), T));
-        demi_put(s, r->turn);
-        for (k = 0; k < 3; k++) {
-            moment[k] = locked >> (3 + k) & 1 ? by[k] : 0;
-            torque[k] += moment[k];
-            r->state.power += (double)moment[k]*(double)(spun[k] + s[k])/2;
-        }
-    } else
-        r->state.power += demi_rail_push(locked >> 3, w->bodies.inv_inertia[i] > 0
-                                         ? 1/w->bodies.inv_inertia[i] : 0, spun, s, kick, none,
-                                         torque, moment);
-    r->state.force = demi_at(force);
-    r->state.torque = demi_at(moment);
-    if (!stepping) return;
-    demi_rail_book(w, r, r->state.power*(double)w->clock.dt);
-}
-/* Adds the reactions of all rails, once all forces are known. */
-static void demi_rails_act(dem_world *w) {
-    int k;
-    for (k = 0; k < w->rail_count && w->clock.dt > 0; k++) {
-        const int i = demi_rail_body(w, &w->rails[k]);
-        dem_rail_state *state = &w->rails[k].state;
-        if (i >= 0) demi_rail_act(w, &w->rails[k], i);
-        else {
-            state->force = state->torque = demi_v(0, 0, 0);
-            state->power = 0;
-        }
+/* Moves them back, and restores their spins. */
+static void demi_some_back(dem_world *w, int index) {
+    const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
+    const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
+    int i;
+    memcpy(w->bodies.pos + first, w->bodies.last_pos + first, size);
+    if (!w->bodies.orienting) return;
+    memcpy(w->bodies.orient + first, w->bodies.last_orient + first, size);
+    for (i = begin; i < end; i++) {
+        const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+        if (!w->bodies.shape[i] || !(w->bodies.inv_mass[i] > 0)) continue;
+        demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
+            demi_at(w->bodies.angular + 4*i), demi_v(1/I.x, 1/I.y, 1/I.z)));
+        if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
     }
 }
-/* Rotates body i from its orientation at the start of the step by the vector `by`, rad. full: its
-   spin at the end, along locked axes. */
-static void demi_rail_rotate(dem_world *w, const demi_rail *r, int i, const dem_real *by,
-                             const dem_real *full) {
-    const dem_quat q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_at(by)), r->start));
-    const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
-    const int shaped = demi_shape_of(w, i) != 0;
-    dem_real spin[3], turn[3];
-    int e;
-    demi_quat_put(w->bodies.orient + 4*i, q);
-    if (shaped)
-        demi_put(spin, demi_spin_of(q, demi_add(demi_at(w->bodies.angular + 4*i),
-            demi_scale(demi_at(w->bodies.torque + 4*i), w->clock.dt/2)),
-            demi_v(1/I.x, 1/I.y, 1/I.z)));
-    demi_put(turn, r->turn);
-    for (e = 0; e < 3; e++) {
-        if (shaped) w->bodies.half_spin[4*i + e] = turn[e];
-        if (r->state.desc.axes >> (3 + e) & 1) w->bodies.spin[4*i + e] = full[e];
-        else if (shaped) w->bodies.spin[4*i + e] = spin[e];
-    }
-    if (w->bodies.centres_valid) demi_centres_rotate(w, &i, 1);
-}
-/* After the move of a step: rotates bodies that are not spheres about free axes alone. */
-static void demi_rails_move(dem_world *w) {
-    int k;
-    for (k = 0; k < w->rail_count; k++) {
-        const demi_rail *r = &w->rails[k];
-        const int i = demi_rail_body(w, r);
-        dem_real by[3], turn[3];
-        if (i < 0 || !demi_shape_of(w, i) || !(r->state.desc.axes >> 3)) continue;
-        demi_put(by, demi_scale(r->turn, w->clock.dt));
-        demi_put(turn, r->turn);
-        demi_rail_rotate(w, r, i, by, turn);
+/* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
+   is its pose a whole step ahead, midway between two detections; surface velocities are those of
+   that time. Bodies that were just set are not ahead (demi_move_midpoint). */
+static void demi_ahead(dem_world *w) {
+    const double dt = (double)w->clock.dt;
+    const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
+    int i;
+    demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        dem_pose pose;
+        wall->mid = wall->ahead = wall->pose;
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
+        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
+        if (demi_pose_sane(&pose)) wall->pose = pose;
+        demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
+        if (demi_pose_sane(&pose)) wall->ahead = pose;
     }
 }
-/* Returns the rotation from one pose to another as a vector, rad. */
-static dem_vec3 demi_pose_turned(const dem_pose *from, const dem_pose *to) {
-    double R[3][3], size, angle;
-    dem_quat q;
-    int i, j;
-    for (i = 0; i < 3; i++)
-        for (j = 0; j < 3; j++)
-            R[i][j] = (double)demi_dot(demi_at(to->rotation + 3*i), demi_at(from->rotation + 3*j));
-    q = demi_quat_of(R);
-    size = sqrt((double)(q.x*q.x + q.y*q.y + q.z*q.z));
-    angle = 2*demi_atan2(size, fabs((double)q.w));
-    return demi_scale(demi_v(q.x, q.y, q.z),
-                      (dem_real)(size > 0 ? (q.w < 0 ? -angle : angle)/size : 0));
-}
-/* Carries body i with its wall, which moves from one pose by another in the middle of the step to a
-   third. Returns the change of its mean velocity, m/s. */
-static dem_real demi_rail_carry(dem_world *w, demi_rail *r, int i, const dem_pose *from,
-                                const dem_pose *mid, const dem_pose *to) {
-    const int locked = r->state.desc.axes, halves = demi_integrator_of(w)->predicts;
-    const demi_periods p = demi_periods_of(w);
-    const dem_vec3 off = demi_sub(r->at, r->seen), wrapped = demi_sub(off, demi_nearest(&p, off));
-    const dem_vec3 own = demi_scale(r->state.desc.spin, w->clock.dt);
-    const dem_vec3 gone = demi_rail_strays(w, r, from, w->bodies.half_vel + 4*i);
-    const dem_vec3 after = demi_scale(gone, DEM_R(0.5)), end = demi_rail_ride(r, gone, from, to, 1);
-    dem_real *half = w->bodies.half_vel + 4*i, *full = w->bodies.vel + 4*i;
-    dem_real x[3], free[3], stray[3], m[3], v[3], s[3], force[3], by[3], most = 0;
-    double work = 0;
-    int k;
-    demi_rail_wants(r, mid, demi_rail_ride(r, gone, from, mid, DEM_R(0.5)), m, s);
-    demi_rail_wants(r, to, end, v, s);
-    demi_put(x, demi_sub(end, wrapped));
-    demi_put(free, demi_sub(demi_add(r->at, demi_scale(demi_at(half), w->clock.dt)),
-                            demi_sub(end, after)));
-    demi_put(stray, after);
-    demi_put(by, demi_add(demi_pose_turned(from, to), own));
-    demi_put(force, r->state.force);
-    for (k = 0; k < 3; k++) {
-        const dem_real was = halves ? half[k] : full[k], now = halves ? m[k] : v[k];
-        if (!(locked >> (3 + k) & 1)) by[k] = w->bodies.half_spin[4*i + k]*w->clock.dt;
-        if (!(locked >> k & 1)) { stray[k] = free[k]; continue; }
-        work += (double)((now - was)*(w->bodies.mass[i]*(was + now) + force[k]*w->clock.dt))/2;
-        most = DEMI_MAX(most, DEMI_ABS(m[k] - half[k]));
-        w->bodies.pos[4*i + k] = x[k];
-        half[k] = m[k];
-        full[k] = v[k];
-    }
-    r->on = demi_add(r->on, demi_add(demi_unrotate(from->rotation, after),
-                                     demi_unrotate(to->rotation, demi_at(stray))));
-    demi_rail_book(w, r, work);
-    if (locked >> 3 && (demi_shape_of(w, i) || w->desc.orientations))
-        demi_rail_rotate(w, r, i, by, s);
-    else for (k = 0; k < 3; k++) if (locked >> (3 + k) & 1) w->bodies.spin[4*i + k] = s[k];
-    return most;
-}
-/* Carries all bodies on rails of wall `of`. */
-static void demi_rails_carry(dem_world *w, int of, const dem_pose *mid, const dem_pose *to) {
-    dem_real most = 0;
-    int k;
-    for (k = 0; k < w->rail_count; k++) {
-        demi_rail *r = &w->rails[k];
-        const int i = demi_rail_wall(w, r) == of ? demi_rail_body(w, r) : -1;
-        dem_real change = 0;
-        if (i >= 0) change = demi_rail_carry(w, r, i, &w->walls[of].pose, mid, to);
-        most = DEMI_MAX(most, change);
-    }
-    w->margin.step_gone += (double)(most*w->clock.dt);
-    w->margin.last_change += (double)most;
-}
-/* Returns the number of rails whose bodies still exist. */
-static int demi_rails_in_force(const dem_world *w) {
-    int k, n = 0;
-    for (k = 0; k < w->rail_count; k++) n += demi_joint_body(w, w->rails[k].body) >= 0;
-    return n;
-}
-/* Removes the rails of bodies that were removed, and that of `body`. */
-static void demi_rails_drop(dem_world *w, dem_body body) {
-    int k, left = 0;
-    for (k = 0; k < w->rail_count; k++) {
-        const dem_body b = w->rails[k].body;
-        if (w->bodies.slot_generation[b.slot - 1] == b.generation &&
-            (b.slot != body.slot || b.generation != body.generation))
-            w->rails[left++] = w->rails[k];
-    }
-    w->rail_count = left;
-}
-DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
-    dem_real v[3], s[3], own[6];
-    dem_body_state state;
-    demi_rail *r;
-    int i, k, of;
-    if (demi_null(w, __func__, d, "desc")) return DEM_ERROR_ARGUMENT;
-    i = demi_body_index(w, __func__, body);
-    if (i < 0 || demi_rows_check(w, __func__, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
-        return DEM_ERROR_ARGUMENT;
-    if (!demi_response_is(w, DEMI_LASTING))
-        return demi_refuse(w, __func__, "contacts of this world are impulses, whose solver has one "
-                           "mass per body for all axes; use DEM_RESPONSE_SPRINGS, or joints "
-                           "(dem_joint_add)");
-    if (w->bodies.inv_mass[i] <= 0)
-        return demi_refuse(w, __func__, "body %u is fixed, so all its axes are locked; set `fixed` "
-                           "to 0 with dem_body_set", (unsigned)body.slot);
-    if (w->desc.planar && d->axes & (DEM_RAIL_Z | DEM_RAIL_SPIN_X | DEM_RAIL_SPIN_Y))
-        return demi_refuse(w, __func__, "axes is %d, but a planar world locks Z, SPIN_X and SPIN_Y "
-                           "of all bodies; leave them out", d->axes);
-    if ((d->wall.id && demi_wall_find(w, __func__, d->wall) < 0) ||
-        (d->axes && w->cell.on && demi_cell_bars(w, __func__, DEMI_CELL_RAILS)))
-        return DEM_ERROR_ARGUMENT;
-    if (!DEMI_GROW(w, w->rails, (size_t)w->rail_count + 1)) return demi_no_memory(w, __func__);
-    demi_rails_drop(w, body);
-    if (!d->axes) { demi_scene_changed(w); return DEM_OK; }
-    r = &w->rails[w->rail_count];
-    memset(r, 0, sizeof *r);
-    r->body = body;
-    r->state.desc = *d;
-    r->at = r->seen = demi_at(w->bodies.pos + 4*i);
-    of = demi_rail_wall(w, r);
-    demi_rail_wants(r, of < 0 ? 0 : &w->walls[of].pose, r->at, v, s);
-    dem_body_get(w, body, &state);
-    demi_put(own, state.velocity);
-    demi_put(own + 3, state.spin);
-    for (k = 0; k < 6; k++) if (d->axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
-    state.velocity = demi_at(own);
-    state.spin = demi_at(own + 3);
-    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, __func__);
-    w->rail_count++;
-    return DEM_OK;
-}
-DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_rail_state *state) {
-    const demi_rail *r;
-    if (demi_null_look(w, __func__, state, "state")) return DEM_ERROR_ARGUMENT;
-    if (demi_body_index((dem_world *)w, __func__, body) < 0) return DEM_ERROR_ARGUMENT;
-    r = demi_rail_of(w, body);
-    if (!r)
-        return demi_refuse(w, __func__, "body %u has no rail; set one with dem_body_rail_set",
-                           (unsigned)body.slot);
-    *state = r->state;
-    return DEM_OK;
-}
-
-/* ---------------------------------------------------------------------------------------------
-   >>growth
-   Bodies that change their size while a world runs: dem_body_radius_set, and desc.growth. All
-   lengths of a body scale with its radius; mass and moments of inertia follow from the density of
-   its material. Its velocity, spin and contact histories stay. New lists are built, so everything
-   that depends on radii or masses follows: coefficients, reach, skin, tessellations, time step.
-   The ledger. The kinetic energy that new mass has, or that lost mass takes along, counts as
-   inserted. The energy that springs gain or lose because radii change is `growth`, as with every
-   change of the scene: forces are computed twice at the same positions, before and after, and the
-   ledger takes the difference. It is the work of the force on the surface that grows.
-   Owns clock.grown and w->grown.
-   --------------------------------------------------------------------------------------------- */
-
-/* As demi_mass_bad, for body i with this radius, m. */
-static int demi_size_bad(const dem_world *w, int i, dem_real radius, double *mass) {
-    const demi_shape *shape = demi_shape_of(w, i);
-    return demi_mass_bad(w, w->bodies.material[i] - 1, shape ? w->bodies.shape[i] - 1 : -1,
-                         shape ? radius/shape->radius : radius, mass);
-}
-/* Gives body i another radius, m, and mass, kg. The list must have been dropped. */
-static void demi_body_resize(dem_world *w, int i, dem_real radius, double mass) {
-    const demi_shape *shape = demi_shape_of(w, i);
-    const int fixed = w->bodies.inv_mass[i] <= 0;
-    const double before = demi_body_energy(w, i);
-    w->bodies.pos[4*i + 3] = radius;
-    w->bodies.mass[i] = (dem_real)mass;
-    w->bodies.inv_mass[i] = fixed ? 0 : (dem_real)(1/mass);
-    w->bodies.inv_inertia[i] = fixed || shape ? 0
-        : (dem_real)(1/demi_sphere_inertia(w, mass, (double)radius));
-    if (w->bodies.orienting) {
-        demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
-        if (shape) w->bodies.moment[4*i + 3] = shape->moment_arm*demi_scale_of(w, i, shape);
-        demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
-    }
-    w->booked.inserted += demi_body_energy(w, i) - before;
-}
-DEM_API dem_result dem_body_radius_set(dem_world *w, dem_body body, dem_real radius) {
-    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_body_index(w, __func__, body);
-    double mass;
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    if (demi_size_bad(w, i, radius, &mass))
-        return demi_refuse(w, __func__, "the radius of body %u is %g m and its mass %g kg, must be "
-                           "> 0 and neither too small nor too large to calculate with in %s "
-                           "precision; lengths are in metres: check the unit", (unsigned)body.slot,
-                           (double)radius, mass, DEMI_SINGLE ? "single" : "double");
-    demi_finish(w);                             /* the open half kick belongs to the old mass */
-    if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
-    demi_body_resize(w, i, radius, mass);
-    demi_scene_changed(w);
-    return DEM_OK;
-}
-
-/* Asks desc.growth for the rates of all bodies and applies them up to the end of the coming step.
-   Radii change after all rates are known, so that no rate depends on the order of bodies.
-   w->grown receives 1 if a radius has changed, 3 if one has become smaller. */
-static dem_result demi_member_grow(dem_world *w) {
-    const double passed = w->clock.time + (double)w->clock.dt - w->clock.grown;
-    const int n = w->bodies.count;
-    dem_real *radius = (dem_real *)demi_alloc(w, (size_t)n + 1, sizeof *radius);
-    dem_result result = radius ? DEM_OK : demi_no_memory(w, "dem_world_step");
-    double mass = 0;
-    int i, grown = 0;
-    demi_finish(w);                             /* the function receives complete velocities, */
-    for (i = 0; i < n && result == DEM_OK; i++) {   /* and the open half kick the old masses */
-        const dem_body id = dem_body_id_get(w, i);
-        const dem_real r = radius[i] = w->bodies.pos[4*i + 3];
-        dem_body_state state;
-        dem_real rate;
-        if (demi_is_ghost(w, i) || dem_body_get(w, id, &state) != DEM_OK) continue;
-        DEMI_USER(w, "a step", 1,
-                  rate = w->desc.growth(&state, id, w->clock.time, w->desc.growth_user))
-        radius[i] = r + (dem_real)((double)rate*passed);
-        if (rate < 0 || rate > 0 || !demi_finite(rate)) grown |= rate < 0 ? 3 : 1;
-        if (demi_size_bad(w, i, radius[i], &mass))
-            result = demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: body %u grows "
-                               "from %g m to %g m at %g m/s (desc.growth), must stay > 0 and "
-                               "finite; return 0 below the smallest radius, or remove the body",
-                               (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[i] + 1,
-                               (double)r, (double)radius[i], (double)rate);
-    }
-    if (result == DEM_OK && grown) {
-        if (!demi_list_drop(w)) result = demi_no_memory(w, "dem_world_step");
-    }
-    for (i = 0; i < n && result == DEM_OK && grown; i++)
-        if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
-            !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
-    demi_free(w, radius);
-    w->grown = grown;
-    return result;
-}
-/* Changes the radii before a step, if that is due, to those at its end. The time step is then
-   chosen again if a body has become smaller: a growing one allows a longer step. */
-static dem_result demi_radii_grow(dem_world *h) {
-    const double until = h->clock.time + (double)h->clock.dt, passed = until - h->clock.grown;
-    double grown = 0;
-    dem_result result;
-    int k;
-    if (!h->desc.growth || !(passed > 0) || passed < (double)h->desc.growth_interval*(1 - 1e-9))
-        return DEM_OK;
-    result = demi_all(h, demi_member_grow);
-    for (k = 0; k < demi_members(h); k++)
-        grown = DEMI_MAX(grown, demi_member(h, k)->grown);
-    if (result == DEM_OK) result = demi_agree(h, &grown, 1);
-    if (result != DEM_OK) return result;
-    h->clock.grown = until;
-    for (k = 0; k < demi_members(h); k++) {
-        dem_world *w = demi_member(h, k);
-        w->clock.grown = until;
-        if (!(grown > 0)) continue;
-        w->stage.forces_valid = w->stage.primed = 0;
-    }
-    if (!(grown > 0)) return DEM_OK;
-    h->stage.list_valid = h->stage.forces_valid = h->stage.primed = 0;
-    h->clock.press_since = h->clock.steps;      /* growing bodies press each other */
-    if (grown > 2) demi_dt_outdated(h);
-    return DEM_OK;
+/* Moves bodies and walls back to the positions before demi_ahead. */
+static void demi_ahead_back(dem_world *w) {
+    const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
+    int i;
+    demi_parallel(w, w->crew.now, runs, 0, demi_some_back);
+    for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -31568,6 +31723,15 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
     for (i = 0; i < 3 && t.mass > 0; i++) t.centre[i] /= t.mass;
     return t;
 }
+/* Books the energies due in the ledger, once bodies have moved. With springs they are 0. */
+static void demi_due_book(dem_world *w) {
+    static const int flows[5] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS,
+                                 DEMI_E_FORCE};
+    int i;
+    for (i = 0; i < 5; i++) w->booked.energy[flows[i]] += w->booked.due[i];
+    w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
+    w->booked.throughput += fabs(w->booked.due[3]) + fabs(w->booked.due[4]);
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>responses
@@ -31577,6 +31741,13 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
    w->desc.response; DEMI_RESPONSES in >>layout lists the rows and their traits. Whoever reads the
    contacts of a world walks over them (demi_walk), so that all see the same ones. Owns no data.
    --------------------------------------------------------------------------------------------- */
+/* Sets the force loop for the laws in force. Returns its name in reports. */
+static const char *demi_kernel_choose(dem_world *w) {
+    w->kernel = w->effects.clustered ? demi_pairs_members
+        : w->events.n.on ? demi_pairs_noted : demi_pairs;
+    if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
+    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
+}
 /* Springs: computes the forces of all contacts that domain d owns: first pairs of spheres, by the
    kernel of the laws in force, then persistent contacts. */
 static void demi_springs(dem_world *w, int d) {
@@ -31812,6 +31983,248 @@ static const char *demi_crushed_text(const dem_world *w, char *text, size_t size
         demi_words(text, size, "since t = %.4g s, body %d, %s %d: jammed or too soft", c->since,
                    (int)c->a, c->b ? "body" : "wall", (int)(c->b ? c->b : c->wall));
     return text;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>stress
+   Stress and fabric of the whole domain, and how a periodic cell that deforms (>>cell) follows
+   strain rates or target stresses. Owns w->cell; moves the domain of the desc.
+
+   The law of the stress. Along an axis let K and C be the sums of stiffness and damping over all
+   contacts for a strain of that axis (demi_cell_stiffen) over the volume, T the target, S the
+   stress, v and u the compression rates of the coming and the last step:
+       K dt (v - b u) + C (v - u) = a (T - S),   |v| at most the largest rate,
+   with a and b of servo walls (>>servo), where gain and stability are derived: K is the response of
+   the stress to a strain before any grain has moved on its own. K and C are renewed every eighth
+   step (DEMI_CELL_REST). K leaves out friction, which raises the response by at most two thirds,
+   and the other axes, which together with this one raise that of the pressure by as much. The limit
+   of the gain is seven times as high.
+   --------------------------------------------------------------------------------------------- */
+/* Volume of the domain, m3. */
+static double demi_volume(const dem_world *w) {
+    double lo[3], hi[3];
+    demi_domain_limits(w, lo, hi);
+    return (hi[0] - lo[0])*(hi[1] - lo[1])*
+        (w->desc.planar ? (double)w->desc.thickness : hi[2] - lo[2]);
+}
+/* Fails and returns 1 if the scene contains what cannot follow the cell. */
+static int demi_cell_refuse(dem_world *w, const char *call) {
+    int count[DEMI_CELL_PARTS], k;
+    memset(count, 0, sizeof count);
+    for (k = 0; k < w->wall_count; k++)
+        count[DEMI_CELL_WALLS] += w->walls[k].kind != DEMI_WALL_NONE;
+    count[DEMI_CELL_RAILS] = demi_rails_in_force(w);
+    count[DEMI_CELL_FEEDS] = w->feed_count;
+    count[DEMI_CELL_OUTLETS] = w->outlet_count;
+    count[DEMI_CELL_FIELDS] = demi_cell_slides(w) ? w->field_count : 0;
+    for (k = 0; k < DEMI_CELL_PARTS; k++) if (count[k]) return demi_cell_bars(w, call, k);
+    return 0;
+}
+/* Chooses the strain rate of axis k for the coming step, from the sums over work groups. */
+static double demi_cell_choose(dem_world *w, int k, double target, double most) {
+    demi_strained *c = &w->cell;
+    const double dt = (double)w->clock.dt, was = -c->rate[k];
+    const double push = DEMI_SERVO_GAIN*(target - c->stress[k]) +
+        (DEMI_SERVO_KEPT*c->stiffness[k]*dt + c->damping[k])*was;
+    const double gives = c->stiffness[k]*dt + c->damping[k];
+    return -(fabs(push) < most*gives ? push/gives : push > 0 ? most : push < 0 ? -most : 0);
+}
+/* Measures the stress that the cell sees, and its stiffness and damping. */
+static void demi_cell_look(dem_world *w) {
+    demi_strained *c = &w->cell;
+    const double volume = demi_volume(w);
+    const int fresh = demi_cell_stiffens(w);
+    int d, k;
+    for (k = 0; k < 3; k++) {
+        c->stress[k] = 0;
+        if (fresh) c->stiffness[k] = c->damping[k] = 0;
+        for (d = 0; d < w->domain_count; d++) {
+            const double *sum = w->domains[d].cell;
+            c->stress[k] += (sum[DEMI_CELL_FLUX + k] - sum[DEMI_CELL_VIRIAL + 4*k])/volume;
+            c->stiffness[k] += sum[DEMI_CELL_STIFF + k]/volume;
+            c->damping[k] += sum[DEMI_CELL_DAMP + k]/volume;
+        }
+    }
+}
+/* Chooses the rates for the coming step along the axes that are led to a stress. */
+static dem_result demi_cell_lead(dem_world *w) {
+    demi_strained *c = &w->cell;
+    dem_real stress[3], most[3];
+    double rate[3], drag[3], norm = fabs(c->shear), dt = (double)w->clock.dt;
+    int k;
+    if (demi_cell_refuse(w, "dem_world_step")) return DEM_ERROR_ARGUMENT;
+    demi_put(stress, c->desc.stress);
+    demi_put(most, c->desc.rate_most);
+    demi_cell_look(w);
+    for (k = 0; k < 3; k++) {
+        rate[k] = most[k] > 0 ? demi_cell_choose(w, k, (double)stress[k], (double)most[k])
+            : c->rate[k];
+        norm = DEMI_MAX(norm, fabs(rate[k]) + fabs(c->shear));
+    }
+    memcpy(drag, c->rate, sizeof drag);
+    memcpy(c->rate, rate, sizeof rate);
+    if (!(norm*dt <= 0.01))
+        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: the cell is deformed "
+                         "at %g 1/s, which strains it by %g in a step of %g s, must be at most "
+                         "0.01; use lower rates (rate, shear, rate_most)",
+                         (unsigned long long)w->clock.steps, norm, norm*dt, dt);
+    if (w->desc.ledger) demi_cell_book(w, drag);
+    c->squeeze = norm*dt*(1 + norm*dt/2)*(2*(double)w->effects.radius_max + (double)demi_cover(w));
+    return DEM_OK;
+}
+/* Moves the sides of the cell for one step, and all images. */
+static void demi_cell_move(dem_world *w) {
+    demi_strained *c = &w->cell;
+    double by[3], shear = demi_cell_map(w, by);
+    dem_real lo[3], hi[3];
+    int k;
+    demi_put(lo, w->desc.domain.lo);
+    demi_put(hi, w->desc.domain.hi);
+    c->offset += by[0]*c->offset + shear*c->side[1];
+    c->sheared += c->shear*(double)w->clock.dt;
+    for (k = 0; k < 3; k++) {
+        c->side[k] += by[k]*c->side[k];
+        c->strain[k] += log1p(by[k]);
+        if (w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC) continue;
+        lo[k] = (dem_real)(c->mid[k] - c->side[k]/2);
+        hi[k] = (dem_real)(c->mid[k] + c->side[k]/2);
+    }
+    w->desc.domain.lo = demi_at(lo);
+    w->desc.domain.hi = demi_at(hi);
+    demi_image_shifts(w);
+}
+#define DEMI_CELL(field, type, how, unit) \
+    DEMI_LIMITED(dem_cell_desc, field, type, how, DEMI_FARTHEST, unit)
+static const demi_field_row demi_cell_rows[] = {DEMI_CELL(rate, 'v', DEMI_ANY, "1/s"),
+    DEMI_CELL(shear, 'r', DEMI_ANY, "1/s"), DEMI_CELL(stress, 'v', DEMI_ANY, "Pa"),
+    DEMI_CELL(rate_most, 'v', DEMI_FROM, "1/s"), DEMI_ROW_END};
+/* Checks the rates of each axis of a desc; *moves receives 1 if any is not 0. */
+static dem_result demi_cell_axes(dem_world *w, const char *call, const dem_cell_desc *d,
+                                 int *moves) {
+    dem_real rate[3], most[3];
+    int k;
+    demi_put(rate, d->rate);
+    demi_put(most, d->rate_most);
+    for (k = 0; k < 3; k++) {
+        const int rated = rate[k] < 0 || rate[k] > 0, led = most[k] > 0;
+        const int sheared = k < 2 && (d->shear < 0 || d->shear > 0);
+        *moves |= rated || led || sheared;
+        if (rated && led)
+            return demi_refuse(w, call, "axis %d has the strain rate %g 1/s and the largest rate "
+                               "%g 1/s towards a stress, one of them must be 0", k, (double)rate[k],
+                               (double)most[k]);
+        if ((rated || led || sheared) && w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC)
+            return demi_refuse(w, call, "axis %d is to be %s, but its boundary is not periodic; "
+                               "set desc.boundary[%d] to DEM_BOUNDARY_PERIODIC, or move walls "
+                               "instead", k, rated || led ? "strained" : "sheared", k);
+    }
+    return DEM_OK;
+}
+DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
+    demi_strained *c;
+    dem_cell_desc before;
+    dem_real rate[3], most[3];
+    double lo[3], hi[3];
+    int k, moves = 0;
+    if (demi_null(w, __func__, desc, "desc") ||
+        demi_rows_check(w, __func__, demi_cell_rows, desc, "", "start from DEM_CELL_DESC and set "
+                        "only what differs")) return DEM_ERROR_ARGUMENT;
+    c = &w->cell;
+    if (!demi_response_is(w, DEMI_LAWS))
+        return demi_refuse(w, __func__, "contacts of this world are impulses, whose solvers do not "
+                           "see the flow of a cell; use DEM_RESPONSE_SPRINGS");
+    if (w->team)
+        return demi_refuse(w, __func__, "this world is a slab, and borders of slabs do not move; "
+                           "use threads");
+    if (demi_cell_axes(w, __func__, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    before = c->desc;
+    c->desc = *desc;
+    if (moves && demi_cell_refuse(w, __func__)) { c->desc = before; return DEM_ERROR_ARGUMENT; }
+    if (!moves && !c->on) return DEM_OK;
+    if (!c->on) {
+        demi_domain_limits(w, lo, hi);
+        for (k = 0; k < 3; k++) { c->mid[k] = (lo[k] + hi[k])/2; c->side[k] = hi[k] - lo[k]; }
+    }
+    c->on = moves || demi_cell_slid(w);
+    demi_finish(w);                             /* the open half kick belongs to the old rates */
+    demi_put(rate, desc->rate);
+    demi_put(most, desc->rate_most);
+    for (k = 0; k < 3; k++) if (!(most[k] > 0)) c->rate[k] = (double)rate[k];
+    c->shear = (double)desc->shear;
+    if (!c->on) c->squeeze = 0;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+DEM_API dem_result dem_cell_state_get(const dem_world *w, dem_cell_state *out) {
+    if (demi_null_look(w, __func__, out, "state")) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    out->box = w->desc.domain;
+    out->offset = (dem_real)w->cell.offset;
+    memcpy(out->strain, w->cell.strain, sizeof out->strain);
+    memcpy(out->rate, w->cell.rate, sizeof out->rate);
+    memcpy(out->stress, w->cell.stress, sizeof out->stress);
+    out->shear = w->cell.sheared;
+    out->shear_rate = w->cell.shear;
+    return DEM_OK;
+}
+
+/* Adds a contact: its symmetric virial, and the fabric of two bodies. */
+static void demi_stress_add(dem_stress *s, const demi_walk *c) {
+    const dem_contact_info *i = &c->info;
+    const double f[3] = {(double)i->force.x, (double)i->force.y, (double)i->force.z};
+    const double l[3] = {(double)c->branch.x, (double)c->branch.y, (double)c->branch.z};
+    const double n[3] = {(double)i->normal.x, (double)i->normal.y, (double)i->normal.z};
+    int k;
+    for (k = 0; k < 6; k++) {
+        const int x = k < 3 ? k : k > 4, y = k < 3 ? k : k == 3 ? 1 : 2;
+        s->contact[k] -= (f[x]*l[y] + f[y]*l[x])/2/s->volume;
+        if (c->b >= 0 && c->counts) s->fabric[k] += n[x]*n[y];
+    }
+    if (!c->counts) return;
+    s->contacts += c->b >= 0;
+    s->coordination += c->b < 0 ? 1 : 2;
+}
+/* Adds the kinetic stress and the solid fraction. */
+static void demi_stress_move(const dem_world *w, dem_stress *s) {
+    double mass = 0, mean[3] = {0, 0, 0};
+    int i, k;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double m = (double)w->bodies.mass[i];
+        const dem_real *v = w->bodies.vel + 4*i;
+        s->solid += m/(double)w->materials[w->bodies.material[i] - 1].density/s->volume;
+        if (w->bodies.inv_mass[i] <= 0) continue;
+        mass += m;
+        for (k = 0; k < 3; k++) mean[k] += m*(double)v[k];
+        for (k = 0; k < 6; k++)
+            s->kinetic[k] += m*(double)v[k < 3 ? k : k > 4]*
+                (double)v[k < 3 ? k : k == 3 ? 1 : 2]/s->volume;
+    }
+    for (k = 0; k < 6 && mass > 0; k++)
+        s->kinetic[k] -= mean[k < 3 ? k : k > 4]*mean[k < 3 ? k : k == 3 ? 1 : 2]/mass/s->volume;
+}
+DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
+    demi_walk c = demi_walk_begin();
+    int k;
+    if (demi_null_look(w, __func__, s, "stress")) return DEM_ERROR_ARGUMENT;
+    memset(s, 0, sizeof *s);
+    if (!w->stage.list_valid) {
+        demi_list_stale(w, __func__);
+        return DEM_ERROR_ARGUMENT;
+    }
+    s->volume = demi_volume(w);
+    if (!(s->volume > 0)) {
+        s->volume = 0;
+        return demi_refuse(w, __func__, "the domain has the volume 0; set desc.domain "
+                           "along all axes");
+    }
+    while (demi_walk_next(w, &c)) demi_stress_add(s, &c);
+    demi_stress_move(w, s);
+    for (k = 0; k < 6; k++) {
+        s->total[k] = s->contact[k] + s->kinetic[k];
+        if (s->contacts) s->fabric[k] /= s->contacts;
+    }
+    s->coordination /= DEMI_MAX(w->bodies.count, 1);
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -32892,248 +33305,6 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     for (i = 0; i < n; i++) DEMI_USER(w, __func__, 0, fn(&all[i], user))
     demi_free(w, all);
     return n;
-}
-
-/* ---------------------------------------------------------------------------------------------
-   >>stress
-   Stress and fabric of the whole domain, and how a periodic cell that deforms (>>cell) follows
-   strain rates or target stresses. Owns w->cell; moves the domain of the desc.
-
-   The law of the stress. Along an axis let K and C be the sums of stiffness and damping over all
-   contacts for a strain of that axis (demi_cell_stiffen) over the volume, T the target, S the
-   stress, v and u the compression rates of the coming and the last step:
-       K dt (v - b u) + C (v - u) = a (T - S),   |v| at most the largest rate,
-   with a and b of servo walls (>>servo), where gain and stability are derived: K is the response of
-   the stress to a strain before any grain has moved on its own. K and C are renewed every eighth
-   step (DEMI_CELL_REST). K leaves out friction, which raises the response by at most two thirds,
-   and the other axes, which together with this one raise that of the pressure by as much. The limit
-   of the gain is seven times as high.
-   --------------------------------------------------------------------------------------------- */
-/* Volume of the domain, m3. */
-static double demi_volume(const dem_world *w) {
-    double lo[3], hi[3];
-    demi_domain_limits(w, lo, hi);
-    return (hi[0] - lo[0])*(hi[1] - lo[1])*
-        (w->desc.planar ? (double)w->desc.thickness : hi[2] - lo[2]);
-}
-/* Fails and returns 1 if the scene contains what cannot follow the cell. */
-static int demi_cell_refuse(dem_world *w, const char *call) {
-    int count[DEMI_CELL_PARTS], k;
-    memset(count, 0, sizeof count);
-    for (k = 0; k < w->wall_count; k++)
-        count[DEMI_CELL_WALLS] += w->walls[k].kind != DEMI_WALL_NONE;
-    count[DEMI_CELL_RAILS] = demi_rails_in_force(w);
-    count[DEMI_CELL_FEEDS] = w->feed_count;
-    count[DEMI_CELL_OUTLETS] = w->outlet_count;
-    count[DEMI_CELL_FIELDS] = demi_cell_slides(w) ? w->field_count : 0;
-    for (k = 0; k < DEMI_CELL_PARTS; k++) if (count[k]) return demi_cell_bars(w, call, k);
-    return 0;
-}
-/* Chooses the strain rate of axis k for the coming step, from the sums over work groups. */
-static double demi_cell_choose(dem_world *w, int k, double target, double most) {
-    demi_strained *c = &w->cell;
-    const double dt = (double)w->clock.dt, was = -c->rate[k];
-    const double push = DEMI_SERVO_GAIN*(target - c->stress[k]) +
-        (DEMI_SERVO_KEPT*c->stiffness[k]*dt + c->damping[k])*was;
-    const double gives = c->stiffness[k]*dt + c->damping[k];
-    return -(fabs(push) < most*gives ? push/gives : push > 0 ? most : push < 0 ? -most : 0);
-}
-/* Measures the stress that the cell sees, and its stiffness and damping. */
-static void demi_cell_look(dem_world *w) {
-    demi_strained *c = &w->cell;
-    const double volume = demi_volume(w);
-    const int fresh = demi_cell_stiffens(w);
-    int d, k;
-    for (k = 0; k < 3; k++) {
-        c->stress[k] = 0;
-        if (fresh) c->stiffness[k] = c->damping[k] = 0;
-        for (d = 0; d < w->domain_count; d++) {
-            const double *sum = w->domains[d].cell;
-            c->stress[k] += (sum[DEMI_CELL_FLUX + k] - sum[DEMI_CELL_VIRIAL + 4*k])/volume;
-            c->stiffness[k] += sum[DEMI_CELL_STIFF + k]/volume;
-            c->damping[k] += sum[DEMI_CELL_DAMP + k]/volume;
-        }
-    }
-}
-/* Chooses the rates for the coming step along the axes that are led to a stress. */
-static dem_result demi_cell_lead(dem_world *w) {
-    demi_strained *c = &w->cell;
-    dem_real stress[3], most[3];
-    double rate[3], drag[3], norm = fabs(c->shear), dt = (double)w->clock.dt;
-    int k;
-    if (demi_cell_refuse(w, "dem_world_step")) return DEM_ERROR_ARGUMENT;
-    demi_put(stress, c->desc.stress);
-    demi_put(most, c->desc.rate_most);
-    demi_cell_look(w);
-    for (k = 0; k < 3; k++) {
-        rate[k] = most[k] > 0 ? demi_cell_choose(w, k, (double)stress[k], (double)most[k])
-            : c->rate[k];
-        norm = DEMI_MAX(norm, fabs(rate[k]) + fabs(c->shear));
-    }
-    memcpy(drag, c->rate, sizeof drag);
-    memcpy(c->rate, rate, sizeof rate);
-    if (!(norm*dt <= 0.01))
-        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: the cell is deformed "
-                         "at %g 1/s, which strains it by %g in a step of %g s, must be at most "
-                         "0.01; use lower rates (rate, shear, rate_most)",
-                         (unsigned long long)w->clock.steps, norm, norm*dt, dt);
-    if (w->desc.ledger) demi_cell_book(w, drag);
-    c->squeeze = norm*dt*(1 + norm*dt/2)*(2*(double)w->effects.radius_max + (double)demi_cover(w));
-    return DEM_OK;
-}
-/* Moves the sides of the cell for one step, and all images. */
-static void demi_cell_move(dem_world *w) {
-    demi_strained *c = &w->cell;
-    double by[3], shear = demi_cell_map(w, by);
-    dem_real lo[3], hi[3];
-    int k;
-    demi_put(lo, w->desc.domain.lo);
-    demi_put(hi, w->desc.domain.hi);
-    c->offset += by[0]*c->offset + shear*c->side[1];
-    c->sheared += c->shear*(double)w->clock.dt;
-    for (k = 0; k < 3; k++) {
-        c->side[k] += by[k]*c->side[k];
-        c->strain[k] += log1p(by[k]);
-        if (w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC) continue;
-        lo[k] = (dem_real)(c->mid[k] - c->side[k]/2);
-        hi[k] = (dem_real)(c->mid[k] + c->side[k]/2);
-    }
-    w->desc.domain.lo = demi_at(lo);
-    w->desc.domain.hi = demi_at(hi);
-    demi_image_shifts(w);
-}
-#define DEMI_CELL(field, type, how, unit) \
-    DEMI_LIMITED(dem_cell_desc, field, type, how, DEMI_FARTHEST, unit)
-static const demi_field_row demi_cell_rows[] = {DEMI_CELL(rate, 'v', DEMI_ANY, "1/s"),
-    DEMI_CELL(shear, 'r', DEMI_ANY, "1/s"), DEMI_CELL(stress, 'v', DEMI_ANY, "Pa"),
-    DEMI_CELL(rate_most, 'v', DEMI_FROM, "1/s"), DEMI_ROW_END};
-/* Checks the rates of each axis of a desc; *moves receives 1 if any is not 0. */
-static dem_result demi_cell_axes(dem_world *w, const char *call, const dem_cell_desc *d,
-                                 int *moves) {
-    dem_real rate[3], most[3];
-    int k;
-    demi_put(rate, d->rate);
-    demi_put(most, d->rate_most);
-    for (k = 0; k < 3; k++) {
-        const int rated = rate[k] < 0 || rate[k] > 0, led = most[k] > 0;
-        const int sheared = k < 2 && (d->shear < 0 || d->shear > 0);
-        *moves |= rated || led || sheared;
-        if (rated && led)
-            return demi_refuse(w, call, "axis %d has the strain rate %g 1/s and the largest rate "
-                               "%g 1/s towards a stress, one of them must be 0", k, (double)rate[k],
-                               (double)most[k]);
-        if ((rated || led || sheared) && w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC)
-            return demi_refuse(w, call, "axis %d is to be %s, but its boundary is not periodic; "
-                               "set desc.boundary[%d] to DEM_BOUNDARY_PERIODIC, or move walls "
-                               "instead", k, rated || led ? "strained" : "sheared", k);
-    }
-    return DEM_OK;
-}
-DEM_API dem_result dem_cell_set(dem_world *w, const dem_cell_desc *desc) {
-    demi_strained *c;
-    dem_cell_desc before;
-    dem_real rate[3], most[3];
-    double lo[3], hi[3];
-    int k, moves = 0;
-    if (demi_null(w, __func__, desc, "desc") ||
-        demi_rows_check(w, __func__, demi_cell_rows, desc, "", "start from DEM_CELL_DESC and set "
-                        "only what differs")) return DEM_ERROR_ARGUMENT;
-    c = &w->cell;
-    if (!demi_response_is(w, DEMI_LAWS))
-        return demi_refuse(w, __func__, "contacts of this world are impulses, whose solvers do not "
-                           "see the flow of a cell; use DEM_RESPONSE_SPRINGS");
-    if (w->team)
-        return demi_refuse(w, __func__, "this world is a slab, and borders of slabs do not move; "
-                           "use threads");
-    if (demi_cell_axes(w, __func__, desc, &moves) != DEM_OK) return DEM_ERROR_ARGUMENT;
-    before = c->desc;
-    c->desc = *desc;
-    if (moves && demi_cell_refuse(w, __func__)) { c->desc = before; return DEM_ERROR_ARGUMENT; }
-    if (!moves && !c->on) return DEM_OK;
-    if (!c->on) {
-        demi_domain_limits(w, lo, hi);
-        for (k = 0; k < 3; k++) { c->mid[k] = (lo[k] + hi[k])/2; c->side[k] = hi[k] - lo[k]; }
-    }
-    c->on = moves || demi_cell_slid(w);
-    demi_finish(w);                             /* the open half kick belongs to the old rates */
-    demi_put(rate, desc->rate);
-    demi_put(most, desc->rate_most);
-    for (k = 0; k < 3; k++) if (!(most[k] > 0)) c->rate[k] = (double)rate[k];
-    c->shear = (double)desc->shear;
-    if (!c->on) c->squeeze = 0;
-    demi_scene_changed(w);
-    return DEM_OK;
-}
-DEM_API dem_result dem_cell_state_get(const dem_world *w, dem_cell_state *out) {
-    if (demi_null_look(w, __func__, out, "state")) return DEM_ERROR_ARGUMENT;
-    memset(out, 0, sizeof *out);
-    out->box = w->desc.domain;
-    out->offset = (dem_real)w->cell.offset;
-    memcpy(out->strain, w->cell.strain, sizeof out->strain);
-    memcpy(out->rate, w->cell.rate, sizeof out->rate);
-    memcpy(out->stress, w->cell.stress, sizeof out->stress);
-    out->shear = w->cell.sheared;
-    out->shear_rate = w->cell.shear;
-    return DEM_OK;
-}
-
-/* Adds a contact: its symmetric virial, and the fabric of two bodies. */
-static void demi_stress_add(dem_stress *s, const demi_walk *c) {
-    const dem_contact_info *i = &c->info;
-    const double f[3] = {(double)i->force.x, (double)i->force.y, (double)i->force.z};
-    const double l[3] = {(double)c->branch.x, (double)c->branch.y, (double)c->branch.z};
-    const double n[3] = {(double)i->normal.x, (double)i->normal.y, (double)i->normal.z};
-    int k;
-    for (k = 0; k < 6; k++) {
-        const int x = k < 3 ? k : k > 4, y = k < 3 ? k : k == 3 ? 1 : 2;
-        s->contact[k] -= (f[x]*l[y] + f[y]*l[x])/2/s->volume;
-        if (c->b >= 0 && c->counts) s->fabric[k] += n[x]*n[y];
-    }
-    if (!c->counts) return;
-    s->contacts += c->b >= 0;
-    s->coordination += c->b < 0 ? 1 : 2;
-}
-/* Adds the kinetic stress and the solid fraction. */
-static void demi_stress_move(const dem_world *w, dem_stress *s) {
-    double mass = 0, mean[3] = {0, 0, 0};
-    int i, k;
-    for (i = 0; i < w->bodies.count; i++) {
-        const double m = (double)w->bodies.mass[i];
-        const dem_real *v = w->bodies.vel + 4*i;
-        s->solid += m/(double)w->materials[w->bodies.material[i] - 1].density/s->volume;
-        if (w->bodies.inv_mass[i] <= 0) continue;
-        mass += m;
-        for (k = 0; k < 3; k++) mean[k] += m*(double)v[k];
-        for (k = 0; k < 6; k++)
-            s->kinetic[k] += m*(double)v[k < 3 ? k : k > 4]*
-                (double)v[k < 3 ? k : k == 3 ? 1 : 2]/s->volume;
-    }
-    for (k = 0; k < 6 && mass > 0; k++)
-        s->kinetic[k] -= mean[k < 3 ? k : k > 4]*mean[k < 3 ? k : k == 3 ? 1 : 2]/mass/s->volume;
-}
-DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
-    demi_walk c = demi_walk_begin();
-    int k;
-    if (demi_null_look(w, __func__, s, "stress")) return DEM_ERROR_ARGUMENT;
-    memset(s, 0, sizeof *s);
-    if (!w->stage.list_valid) {
-        demi_list_stale(w, __func__);
-        return DEM_ERROR_ARGUMENT;
-    }
-    s->volume = demi_volume(w);
-    if (!(s->volume > 0)) {
-        s->volume = 0;
-        return demi_refuse(w, __func__, "the domain has the volume 0; set desc.domain "
-                           "along all axes");
-    }
-    while (demi_walk_next(w, &c)) demi_stress_add(s, &c);
-    demi_stress_move(w, s);
-    for (k = 0; k < 6; k++) {
-        s->total[k] = s->contact[k] + s->kinetic[k];
-        if (s->contacts) s->fabric[k] /= s->contacts;
-    }
-    s->coordination /= DEMI_MAX(w->bodies.count, 1);
-    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -34253,6 +34424,156 @@ DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>world
+   Creating a world and destroying it. dem_world_create checks the desc. Fields that are 0 are
+   replaced by a choice, there or when a run begins. Every block that a world allocates (demi_hold)
+   is linked into one of two chains; dem_world_destroy frees both, so no array can be forgotten.
+   --------------------------------------------------------------------------------------------- */
+DEM_API const char *dem_result_name_get(dem_result r) {
+    static const char *names[] = {"ok", "bad argument", "out of memory", "file error",
+                                  "bad format", "time step too large",
+                                  "unstable", "stopped"};
+    return (int)r >= 0 && (size_t)r < sizeof names/sizeof *names ? names[r] : "unknown";
+}
+
+DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
+    if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
+        "began as DEM_WORLD_DESC";
+    const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
+    const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
+    int k;
+    const demi_field_row *bad = demi_rows_bad(0, demi_world_desc_rows, d, &k);
+    if (bad) return bad->refusal;
+    if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
+        !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
+        !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
+        return "dem_world_create: a contact law is not one of the enum values; start from "
+            "DEM_WORLD_DESC";
+    if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
+        (int)d->search >= DEMI_SEARCHES || (int)d->cone < 0 || d->cone > DEM_CONE_CONVEX ||
+        (int)d->solver < 0 || d->solver > DEM_SOLVER_SPECTRAL)
+        return "dem_world_create: integrator, search, cone or solver is not one of the enum "
+            "values; start from DEM_WORLD_DESC";
+    for (k = 0; k < 3; k++)
+        if (d->boundary[k] != DEM_BOUNDARY_OPEN &&
+            (!(hi[k] > lo[k]) || !demi_bounded((double)lo[k]) || !demi_bounded((double)hi[k])))
+            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
+                "below domain.hi there, or one is beyond 1e15 m; set domain";
+    if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
+        return "dem_world_create: planar is 1, but the z boundary is not open; discs stay at z "
+            "= 0: leave it open";
+    if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
+        "library choose";
+    if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
+                    d->law_range_radii > 0 || d->law_who || d->law_rows))
+        return "dem_world_create: law_range, law_range_radii, law_who or law_rows is set, but law "
+            "is null; they apply only to a user-defined law: set law, or leave them 0";
+    if (d->law_rate && (!d->law || !d->law_who || !d->body_reals))
+        return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
+            "the rate at which your law changes the numbers of bodies: set all four, or leave it "
+            "null";
+#ifdef DEM_NO_IMPULSES
+    if (d->response == DEM_RESPONSE_IMPULSES)
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dem.h was compiled with "
+            "DEM_NO_IMPULSES; compile it without that switch, or use springs";
+#endif
+    if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dt is 0 s; impulses have "
+            "no contact time to choose it from: set a dt in which grains move by less than a "
+            "tenth of their radius, such as 1e-3 s";
+    if (d->response == DEM_RESPONSE_IMPULSES &&
+        (d->law || (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
+                    d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but law or integrator is "
+            "set; impulses use neither: leave both 0";
+    if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
+        return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, "
+            "digits and _, separated by one space, such as \"temperature charge\"; null means none";
+    if (demi_names(d->groups, DEM_GROUPS) < 0)
+        return "dem_world_create: groups must be at most 32 words of at most 23 letters, digits "
+            "and _, separated by one space, such as \"coarse tracer\"; null means none";
+    if (demi_names(d->law_memory_names, d->law_memory) < 0)
+        return "dem_world_create: law_memory_names must be at most law_memory words of at most 23 "
+            "letters, digits and _, separated by one space; null means memory0, memory1, ...";
+    if (!demi_names(d->body_reals, DEM_BODY_REALS) && d->body_reals_fn)
+        return "dem_world_create: body_reals_fn is given, but body_reals names no numbers; name "
+            "them, or leave both 0";
+#ifdef __TINYC__
+    if (DEMI_SINGLE) return "dem_world_create: tcc 0.9.27 computes some float expressions "
+        "wrongly; compile with gcc or clang, or leave DEM_REAL at double";
+#endif
+    if (d->law_vectors < 0 || d->law_vectors > d->law_memory/3)
+        return "dem_world_create: law_vectors must be 0 to law_memory/3; increase law_memory, "
+            "which counts reals";
+    if (!d->allocator.alloc_fn != !d->allocator.free_fn)
+        return "dem_world_create: the allocator has only one of alloc_fn and free_fn; give both "
+            "or neither";
+    return "";
+}
+
+DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version,
+                                            size_t real_size) {
+    dem_world *w;
+    if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
+        *dem_world_create_error_get(desc)) return 0;
+    w = (dem_world *)demi_raw_alloc(0, &desc->allocator, sizeof *w);
+    if (!w) return 0;
+    memset(w, 0, sizeof *w);
+    w->desc = w->asked = *desc;
+    demi_names_own(w, desc);
+    w->bytes = sizeof *w;
+    if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
+    if (w->desc.planar) w->desc.gravity.z = 0;
+    if (demi_response_is(w, DEMI_MIDWAY)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
+    /* until there are bodies, by which demi_levels_choose decides */
+    if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
+    if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
+    w->crew.now = w->desc.threads;              /* until the first step */
+    w->crew.fixed = DEMI_CREW_FIXED;
+    demi_bodies_begin(w);
+    w->bodies.orienting = desc->orientations != 0;
+    w->bodies.backward = demi_integrator_of(w)->backward;
+    w->bodies.booked = desc->ledger && demi_integrator_of(w)->predicts;
+    w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
+                                      sizeof(demi_pair));
+    w->domains = (demi_domain *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
+    w->cross_incoming_start = (int *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS + 1, sizeof(int));
+    if (!w->pairs || !w->domains || !w->cross_incoming_start) {
+        dem_world_destroy(w);
+        return 0;
+    }
+    return w;
+}
+
+DEM_API void dem_world_destroy(dem_world *w) {
+    dem_allocator allocator;
+    int chain;
+    if (demi_null(w, __func__, w, "world")) return;
+    if (w->look.under_way) {
+        demi_refuse(w, __func__, "called from the function of an output "
+                    "(dem_output_add) while the world runs; return 1 from that function to stop "
+                    "the run, then destroy the world");
+        return;
+    }
+    demi_calls(w, __func__, 1);                 /* the allocator sees an incomplete world */
+    for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
+    allocator = w->desc.allocator;
+    demi_raw_free(0, &allocator, w, sizeof *w);
+}
+
+DEM_API const char *dem_world_error_get(const dem_world *w) {
+    if (!w) return "dem_world_create: the world is null, because dem_world_create failed; "
+        "dem_world_create_error_get(desc) says why";
+    ((dem_world *)w)->refused = 0;              /* the message has been read */
+    return w->error;
+}
+
+/* ================================================================================================
+   >>services - volume II: what reads a world, writes it to files or shares it out. No part above
+   this line calls one below.
+   ============================================================================================== */
+
+/* ---------------------------------------------------------------------------------------------
    >>measure
    Measurements of the present state: counters, contacts, blinded grains of a sieve, the angle of
    repose, and the digest of a world. Functions that take the world as const change nothing that a
@@ -34874,6 +35195,110 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>parts
+   The scene as rows of fields, part by part: what a checkpoint and the world that reads it, or the
+   processes of a run, must have in common. It consists of the fields that influence a run. Fields
+   whose row is marked DEMI_FREE may differ (threads, allocator, allow_large_dt, user pointers). A
+   checkpoint holds the values, so that an error message can name the field and both values.
+   --------------------------------------------------------------------------------------------- */
+/* Digests of the geometry of a shape, without values that are derived from it. Pieces are hashed
+   member by member, because the struct has padding. */
+static uint64_t demi_digest_spheres(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
+    return demi_hash(DEMI_HASH_START, s->parts, 4*(size_t)s->count*sizeof(dem_real));
+}
+static uint64_t demi_digest_hull(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
+    const uint64_t h = demi_hash(DEMI_HASH_START, s->hull, s->faces
+                                 ? demi_shape_hull_reals(s)*sizeof(double) : 0);
+    return demi_hash(h, s->rim, s->faces ? demi_shape_rim_ints(s)*sizeof(int32_t) : 0);
+}
+static uint64_t demi_digest_pieces(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
+    uint64_t h = DEMI_HASH_START;
+    int k;
+    for (k = 0; k < s->pieces; k++) {
+        h = demi_hash(h, &s->piece[k].shape, sizeof s->piece->shape);
+        h = demi_hash(h, &s->piece[k].at, sizeof s->piece->at);
+        h = demi_hash(h, &s->piece[k].q, sizeof s->piece->q);
+    }
+    return h;
+}
+static const demi_field_row demi_shape_fields[] = {
+    DEMI_ROW(demi_shape, kind, 'i'), DEMI_ROW_AS(demi_shape, "spheres", count, 'i'),
+    DEMI_ROW(demi_shape, axes, 'v'), DEMI_ROW(demi_shape, inertia, 'v'),
+    DEMI_ROW(demi_shape, volume, 'd'), DEMI_ROW(demi_shape, corners, 'i'),
+    DEMI_ROW(demi_shape, faces, 'i'), DEMI_ROW(demi_shape, pieces, 'i'),
+    DEMI_ROW_DIGEST("spheres", demi_digest_spheres), DEMI_ROW_DIGEST("faces", demi_digest_hull),
+    DEMI_ROW_DIGEST("pieces", demi_digest_pieces), DEMI_ROW_END};
+
+/* A part of a scene: a kind of items, each a struct with these rows. */
+typedef struct demi_scene_part {
+    const char *name, *many;         /* for error messages: of one item; of all */
+    const demi_field_row *rows;
+} demi_scene_part;
+enum { DEMI_PART_PAIRS = 2, DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
+static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
+    {"", "descs", demi_world_desc_rows},
+    {" of material", "materials", demi_material_rows},
+    {" (dem_pair_set) of materials", "pairs of materials", demi_pair_rows},
+    {" of shape", "shapes", demi_shape_fields},
+    {" of wall", "walls", demi_wall_rows},
+    {" of field", "fields", demi_field_rows},
+    {" of feed", "feeds", demi_feed_rows},
+    {" of outlet", "outlets", demi_outlet_rows}};
+/* Writes the number of items of each part, in the order of demi_scene_parts. Walls that were
+   removed count. */
+static void demi_scene_counts(const dem_world *w, int32_t *counts) {
+    counts[0] = 1;
+    counts[1] = w->material_count;
+    counts[DEMI_PART_PAIRS] = w->material_count*w->material_count;
+    counts[3] = w->shape_count;
+    counts[DEMI_PART_WALLS] = w->wall_count;
+    counts[5] = w->field_count;
+    counts[6] = w->feed_count;
+    counts[7] = w->outlet_count;
+}
+/* Returns item i of a part: the struct that the part's rows describe. */
+static const void *demi_scene_item(const dem_world *w, int part, int i) {
+    const int n = w->material_count;
+    switch (part) {
+    case 0: return &w->asked;
+    case 1: return &w->materials[i];
+    case DEMI_PART_PAIRS: return &w->pairs[i/n*DEMI_MATERIALS + i%n].given;
+    case 3: return &w->shapes[i];
+    case DEMI_PART_WALLS: return &w->walls[i];
+    case 5: return &w->fields[i].desc;
+    case 6: return demi_feed_at(w, i);
+    default: return &demi_outlet_at(w, i)->desc;
+    }
+}
+/* Writes the scene, or counts or hashes its bytes, as the stream says. */
+static void demi_visit_scene(const dem_world *w, demi_stream *s) {
+    int32_t counts[DEMI_PARTS];
+    char value[DEMI_ROW_MOST];
+    int part, i;
+    const demi_field_row *r;
+    demi_scene_counts(w, counts);
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++)
+            for (r = demi_scene_parts[part].rows; r->name; r++) {
+                if (r->how & DEMI_FREE) continue;
+                demi_row_value(r, demi_scene_item(w, part, i), value);
+                demi_visit(s, value, r->size);
+            }
+}
+/* Returns a digest of the scene. Processes compare it to check that they hold the same one. */
+static uint64_t demi_scene_digest(const dem_world *w) {
+    int32_t counts[DEMI_PARTS];
+    demi_stream s = {0, 0, 0, DEMI_HASH_START, 0, 0, 0};
+    demi_scene_counts(w, counts);
+    demi_visit(&s, counts, sizeof counts);
+    demi_visit_scene(w, &s);
+    return s.sum;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>mixing
    Mixing and segregation of two components. All indices compare the present places of the grains
    with those that a random exchange of all grains would give. Reads bodies and contacts, and
@@ -35054,6 +35479,107 @@ DEM_API dem_result dem_mixing_get(const dem_world *world, const dem_mixing_desc 
     demi_free(w, count);
     return i ? DEM_OK : demi_no_memory(w, __func__);
 }
+
+/* ---------------------------------------------------------------------------------------------
+   >>impacts
+   Measurements of recorded contacts (>>events): spectra of impact energies, collision rates, wear.
+   Reads w->events only.
+   --------------------------------------------------------------------------------------------- */
+
+/* Returns the lower limit of a bin, J. */
+static double demi_impact_limit(int bin) { return demi_pow(10, bin/5.0 - 18); }
+/* True if the materials x and y (indices) are those of ids a and b, of which 0 means any. */
+static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
+    return ((!a.id || a.id == x + 1) && (!b.id || b.id == y + 1)) ||
+        ((!a.id || a.id == y + 1) && (!b.id || b.id == x + 1));
+}
+DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
+                                   dem_impacts *out) {
+    int i, k;
+    if (demi_null_look(w, __func__, out, "impacts")) return DEM_ERROR_ARGUMENT;
+    if (demi_events_needed(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (a.id < 0 || a.id > w->material_count || b.id < 0 || b.id > w->material_count)
+        return demi_refuse(w, __func__, "material %d does not exist; there are %d, and id 0 means "
+                           "any", (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
+                           w->material_count);
+    memset(out, 0, sizeof *out);
+    out->seconds = w->clock.time - w->events.n.since;
+    for (k = 0; k <= DEM_IMPACT_BINS; k++) out->bin[k] = demi_impact_limit(k);
+    for (i = 0; i < w->events.n.pairs; i++) {
+        const demi_impacts *p = &w->events.pairs[i];
+        if (!demi_impacts_fit(p->a, p->b, a, b)) continue;
+        out->ended += p->ended;
+        out->lost_normal += p->lost[0];
+        out->lost_slide += p->lost[1];
+        out->lost_tangent += p->lost[2];
+        out->lost_rolling += p->lost[3];
+        for (k = 0; k < DEM_IMPACT_BINS; k++) {
+            out->impacts[k] += p->impacts[k];
+            out->losses[k] += p->losses[k];
+            out->energy[k] += p->energy[k];
+        }
+    }
+    for (i = 0; i < w->events.n.open; i++) {
+        const dem_event e = demi_event_shown(w, i, DEM_EVENT_OPEN);
+        if (!demi_impacts_fit((int)e.material_a.id - 1, (int)e.material_b.id - 1, a, b)) continue;
+        out->open++;
+        out->lost_normal += e.lost_normal;
+        out->lost_slide += e.lost_slide;
+        out->lost_tangent += e.lost_tangent;
+        out->lost_rolling += e.lost_rolling;
+    }
+    out->rate = out->seconds > 0 ? out->ended/out->seconds : 0;
+    return DEM_OK;
+}
+
+/* Returns the wear of a wall; null if nothing has been recorded on it. Fails, with *result, if
+   there is no such wall or no recording. */
+static const demi_worn *demi_worn_of(dem_world *w, const char *call, dem_wall wall,
+                                     dem_result *result) {
+    const int i = demi_wall_place(wall);
+    *result = demi_events_needed(w, call);
+    if (*result != DEM_OK) return 0;
+    if (!demi_wall_there(w, wall)) {
+        *result = demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist; it was removed, or "
+                            "the id belongs to another world", call, (int)wall.id);
+        return 0;
+    }
+    return i < w->events.n.walls && w->events.walls[i].id == wall.id ? &w->events.walls[i] : 0;
+}
+DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coefficient,
+                                     double hardness, dem_wear *wear) {
+    const demi_worn *worn;
+    dem_result result;
+    if (demi_null_look(w, __func__, wear, "wear")) return DEM_ERROR_ARGUMENT;
+    worn = demi_worn_of(w, __func__, wall, &result);
+    if (result != DEM_OK) return result;
+    if (!demi_finite_double(coefficient) || coefficient < 0 || !demi_finite_double(hardness) ||
+        !(hardness > 0))
+        return demi_refuse(w, __func__, "coefficient is %g, must be >= 0, and hardness is %g Pa, "
+                           "must be > 0, both finite; steel has about 1e-4 and 2e9 Pa", coefficient,
+                           hardness);
+    memset(wear, 0, sizeof *wear);
+    wear->seconds = w->clock.time - w->events.n.since;
+    wear->slide = worn ? worn->slide : 0;
+    wear->normal = worn ? worn->normal : 0;
+    wear->volume = coefficient*wear->slide/hardness;
+    return DEM_OK;
+}
+DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, int capacity) {
+    const demi_worn *worn;
+    dem_result result;
+    int k, count;
+    if (demi_null_look(w, __func__, w, "world")) return -1;
+    worn = demi_worn_of(w, __func__, wall, &result);
+    if (result != DEM_OK) return -1;
+    k = demi_wall_place(wall);
+    count = demi_wall_kinds[w->walls[k].kind].corners > 1 ? w->walls[k].element_count : 0;
+    for (k = 0; k < count && k < capacity && work; k++)
+        work[k] = worn ? w->events.facets[worn->first + k] : 0;
+    return count;
+}
+
+#ifndef DEM_NO_FILES
 
 /* ---------------------------------------------------------------------------------------------
    >>outlines
@@ -38379,58 +38905,6 @@ DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet o
     }
     return demi_out_close(&o);
 }
-
-/* ---------------------------------------------------------------------------------------------
-   >>impacts
-   Measurements of recorded contacts (>>events): spectra of impact energies, collision rates, wear.
-   Reads w->events only, and writes CSV files.
-   --------------------------------------------------------------------------------------------- */
-
-/* Returns the lower limit of a bin, J. */
-static double demi_impact_limit(int bin) { return demi_pow(10, bin/5.0 - 18); }
-/* True if the materials x and y (indices) are those of ids a and b, of which 0 means any. */
-static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
-    return ((!a.id || a.id == x + 1) && (!b.id || b.id == y + 1)) ||
-        ((!a.id || a.id == y + 1) && (!b.id || b.id == x + 1));
-}
-DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
-                                   dem_impacts *out) {
-    int i, k;
-    if (demi_null_look(w, __func__, out, "impacts")) return DEM_ERROR_ARGUMENT;
-    if (demi_events_needed(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
-    if (a.id < 0 || a.id > w->material_count || b.id < 0 || b.id > w->material_count)
-        return demi_refuse(w, __func__, "material %d does not exist; there are %d, and id 0 means "
-                           "any", (int)(a.id < 0 || a.id > w->material_count ? a.id : b.id),
-                           w->material_count);
-    memset(out, 0, sizeof *out);
-    out->seconds = w->clock.time - w->events.n.since;
-    for (k = 0; k <= DEM_IMPACT_BINS; k++) out->bin[k] = demi_impact_limit(k);
-    for (i = 0; i < w->events.n.pairs; i++) {
-        const demi_impacts *p = &w->events.pairs[i];
-        if (!demi_impacts_fit(p->a, p->b, a, b)) continue;
-        out->ended += p->ended;
-        out->lost_normal += p->lost[0];
-        out->lost_slide += p->lost[1];
-        out->lost_tangent += p->lost[2];
-        out->lost_rolling += p->lost[3];
-        for (k = 0; k < DEM_IMPACT_BINS; k++) {
-            out->impacts[k] += p->impacts[k];
-            out->losses[k] += p->losses[k];
-            out->energy[k] += p->energy[k];
-        }
-    }
-    for (i = 0; i < w->events.n.open; i++) {
-        const dem_event e = demi_event_shown(w, i, DEM_EVENT_OPEN);
-        if (!demi_impacts_fit((int)e.material_a.id - 1, (int)e.material_b.id - 1, a, b)) continue;
-        out->open++;
-        out->lost_normal += e.lost_normal;
-        out->lost_slide += e.lost_slide;
-        out->lost_tangent += e.lost_tangent;
-        out->lost_rolling += e.lost_rolling;
-    }
-    out->rate = out->seconds > 0 ? out->ended/out->seconds : 0;
-    return DEM_OK;
-}
 DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
     demi_out out;
     dem_result result;
@@ -38460,58 +38934,11 @@ DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
     return demi_out_close(&out);
 }
 
-/* Returns the wear of a wall; null if nothing has been recorded on it. Fails, with *result, if
-   there is no such wall or no recording. */
-static const demi_worn *demi_worn_of(dem_world *w, const char *call, dem_wall wall,
-                                     dem_result *result) {
-    const int i = demi_wall_place(wall);
-    *result = demi_events_needed(w, call);
-    if (*result != DEM_OK) return 0;
-    if (!demi_wall_there(w, wall)) {
-        *result = demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist; it was removed, or "
-                            "the id belongs to another world", call, (int)wall.id);
-        return 0;
-    }
-    return i < w->events.n.walls && w->events.walls[i].id == wall.id ? &w->events.walls[i] : 0;
-}
-DEM_API dem_result dem_wall_wear_get(dem_world *w, dem_wall wall, double coefficient,
-                                     double hardness, dem_wear *wear) {
-    const demi_worn *worn;
-    dem_result result;
-    if (demi_null_look(w, __func__, wear, "wear")) return DEM_ERROR_ARGUMENT;
-    worn = demi_worn_of(w, __func__, wall, &result);
-    if (result != DEM_OK) return result;
-    if (!demi_finite_double(coefficient) || coefficient < 0 || !demi_finite_double(hardness) ||
-        !(hardness > 0))
-        return demi_refuse(w, __func__, "coefficient is %g, must be >= 0, and hardness is %g Pa, "
-                           "must be > 0, both finite; steel has about 1e-4 and 2e9 Pa", coefficient,
-                           hardness);
-    memset(wear, 0, sizeof *wear);
-    wear->seconds = w->clock.time - w->events.n.since;
-    wear->slide = worn ? worn->slide : 0;
-    wear->normal = worn ? worn->normal : 0;
-    wear->volume = coefficient*wear->slide/hardness;
-    return DEM_OK;
-}
-DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, int capacity) {
-    const demi_worn *worn;
-    dem_result result;
-    int k, count;
-    if (demi_null_look(w, __func__, w, "world")) return -1;
-    worn = demi_worn_of(w, __func__, wall, &result);
-    if (result != DEM_OK) return -1;
-    k = demi_wall_place(wall);
-    count = demi_wall_kinds[w->walls[k].kind].corners > 1 ? w->walls[k].element_count : 0;
-    for (k = 0; k < count && k < capacity && work; k++)
-        work[k] = worn ? w->events.facets[worn->first + k] : 0;
-    return count;
-}
-
 /* ---------------------------------------------------------------------------------------------
    >>checkpoint
    Checkpoints: binary files with the complete state, from which a run continues bit for bit. The
    same functions (demi_visit_...) write and read the state, so that the two cannot differ. This
-   part owns demi_stream and the file format, and reads the whole world.
+   part owns the file format, and reads the whole world.
 
    A file consists of
        head      magic, version, size of dem_real, byte order, digest of the layout, sizes, counts
@@ -38528,158 +38955,6 @@ DEM_API int dem_wall_wear_facets_get(dem_world *w, dem_wall wall, double *work, 
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
 enum { DEMI_CHECKPOINT_VERSION = 26 };
-
-/* Where a visit writes to or reads from: `file`, or memory at `to`, or memory at `from`. If all
-   three are null, the visit only counts bytes. */
-typedef struct demi_stream {
-    FILE *file;
-    char *to;
-    const char *from;
-    uint64_t sum;                    /* hash of the bytes visited; 0 at the beginning: no hash */
-    size_t size, left;               /* bytes visited; bytes that may still be read at `from` */
-    int cut;                         /* 1: a read went beyond the last byte */
-} demi_stream;
-
-/* Writes `size` bytes of data, or reads them into data, as the stream says. A read beyond the end
-   sets data to zeros. */
-static void demi_visit(demi_stream *s, void *data, size_t size) {
-    s->size += size;
-    if (!size) return;
-    if (s->sum) s->sum = demi_hash(s->sum, data, size);
-    if (s->file) fwrite(data, 1, size, s->file);
-    else if (s->to) {
-        memcpy(s->to, data, size);
-        s->to += size;
-    } else if (s->from && size <= s->left) {
-        memcpy(data, s->from, size);
-        s->from += size;
-        s->left -= size;
-    } else if (s->from) {
-        memset(data, 0, size);
-        s->left = 0;
-        s->cut = 1;
-    }
-}
-#define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
-
-/* --- the scene: what a checkpoint and the world that reads it must have in common. It consists of
-       the fields that influence a run. Fields whose row is marked DEMI_FREE may differ (threads,
-       allocator, allow_large_dt, user pointers). The file holds the values, so that an error
-       message can name the field and both values. --- */
-
-enum { DEMI_ROW_MOST = DEM_GROUPS*24 };         /* bytes of a field in the file, at most */
-/* Digests of the geometry of a shape, without values that are derived from it. Pieces are hashed
-   member by member, because the struct has padding. */
-static uint64_t demi_digest_spheres(const void *item) {
-    const demi_shape *s = (const demi_shape *)item;
-    return demi_hash(DEMI_HASH_START, s->parts, 4*(size_t)s->count*sizeof(dem_real));
-}
-static uint64_t demi_digest_hull(const void *item) {
-    const demi_shape *s = (const demi_shape *)item;
-    const uint64_t h = demi_hash(DEMI_HASH_START, s->hull, s->faces
-                                 ? demi_shape_hull_reals(s)*sizeof(double) : 0);
-    return demi_hash(h, s->rim, s->faces ? demi_shape_rim_ints(s)*sizeof(int32_t) : 0);
-}
-static uint64_t demi_digest_pieces(const void *item) {
-    const demi_shape *s = (const demi_shape *)item;
-    uint64_t h = DEMI_HASH_START;
-    int k;
-    for (k = 0; k < s->pieces; k++) {
-        h = demi_hash(h, &s->piece[k].shape, sizeof s->piece->shape);
-        h = demi_hash(h, &s->piece[k].at, sizeof s->piece->at);
-        h = demi_hash(h, &s->piece[k].q, sizeof s->piece->q);
-    }
-    return h;
-}
-static const demi_field_row demi_shape_fields[] = {
-    DEMI_ROW(demi_shape, kind, 'i'), DEMI_ROW_AS(demi_shape, "spheres", count, 'i'),
-    DEMI_ROW(demi_shape, axes, 'v'), DEMI_ROW(demi_shape, inertia, 'v'),
-    DEMI_ROW(demi_shape, volume, 'd'), DEMI_ROW(demi_shape, corners, 'i'),
-    DEMI_ROW(demi_shape, faces, 'i'), DEMI_ROW(demi_shape, pieces, 'i'),
-    DEMI_ROW_DIGEST("spheres", demi_digest_spheres), DEMI_ROW_DIGEST("faces", demi_digest_hull),
-    DEMI_ROW_DIGEST("pieces", demi_digest_pieces), DEMI_ROW_END};
-
-/* A part of a scene: a kind of items, each a struct with these rows. */
-typedef struct demi_scene_part {
-    const char *name, *many;         /* for error messages: of one item; of all */
-    const demi_field_row *rows;
-} demi_scene_part;
-enum { DEMI_PART_PAIRS = 2, DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
-static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
-    {"", "descs", demi_world_desc_rows},
-    {" of material", "materials", demi_material_rows},
-    {" (dem_pair_set) of materials", "pairs of materials", demi_pair_rows},
-    {" of shape", "shapes", demi_shape_fields},
-    {" of wall", "walls", demi_wall_rows},
-    {" of field", "fields", demi_field_rows},
-    {" of feed", "feeds", demi_feed_rows},
-    {" of outlet", "outlets", demi_outlet_rows}};
-/* Writes the number of items of each part, in the order of demi_scene_parts. Walls that were
-   removed count. */
-static void demi_scene_counts(const dem_world *w, int32_t *counts) {
-    counts[0] = 1;
-    counts[1] = w->material_count;
-    counts[DEMI_PART_PAIRS] = w->material_count*w->material_count;
-    counts[3] = w->shape_count;
-    counts[DEMI_PART_WALLS] = w->wall_count;
-    counts[5] = w->field_count;
-    counts[6] = w->feed_count;
-    counts[7] = w->outlet_count;
-}
-/* Returns item i of a part: the struct that the part's rows describe. */
-static const void *demi_scene_item(const dem_world *w, int part, int i) {
-    const int n = w->material_count;
-    switch (part) {
-    case 0: return &w->asked;
-    case 1: return &w->materials[i];
-    case DEMI_PART_PAIRS: return &w->pairs[i/n*DEMI_MATERIALS + i%n].given;
-    case 3: return &w->shapes[i];
-    case DEMI_PART_WALLS: return &w->walls[i];
-    case 5: return &w->fields[i].desc;
-    case 6: return demi_feed_at(w, i);
-    default: return &demi_outlet_at(w, i)->desc;
-    }
-}
-/* Writes the value of a field to `out` in the form of the file, r->size bytes. */
-static void demi_row_value(const demi_field_row *r, const void *item, void *out) {
-    const char *at = (const char *)item + r->offset, *text;
-    memset(out, 0, r->size);
-    if (r->type == 'h') {
-        const uint64_t digest = r->digest(item);
-        memcpy(out, &digest, sizeof digest);
-    } else if (r->type == 'p') {
-        char none[sizeof(void (*)(void))] = "";
-        const int32_t one = memcmp(at, none, sizeof none) != 0;
-        memcpy(out, &one, sizeof one);
-    } else if (r->type == 't') {
-        memcpy(&text, at, sizeof text);
-        if (text) strncpy((char *)out, text, r->size - 1);
-    } else memcpy(out, at, r->size);
-}
-/* Writes the scene, or counts or hashes its bytes, as the stream says. */
-static void demi_visit_scene(const dem_world *w, demi_stream *s) {
-    int32_t counts[DEMI_PARTS];
-    char value[DEMI_ROW_MOST];
-    int part, i;
-    const demi_field_row *r;
-    demi_scene_counts(w, counts);
-    for (part = 0; part < DEMI_PARTS; part++)
-        for (i = 0; i < counts[part]; i++)
-            for (r = demi_scene_parts[part].rows; r->name; r++) {
-                if (r->how & DEMI_FREE) continue;
-                demi_row_value(r, demi_scene_item(w, part, i), value);
-                demi_visit(s, value, r->size);
-            }
-}
-/* Returns a digest of the scene. Processes compare it to check that they hold the same one. */
-static uint64_t demi_scene_digest(const dem_world *w) {
-    int32_t counts[DEMI_PARTS];
-    demi_stream s = {0, 0, 0, DEMI_HASH_START, 0, 0, 0};
-    demi_scene_counts(w, counts);
-    demi_visit(&s, counts, sizeof counts);
-    demi_visit_scene(w, &s);
-    return s.sum;
-}
 
 /* --- the state, visited in the order in which it is checked --- */
 
@@ -38773,14 +39048,6 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
                    3*walls*sizeof(dem_real));
         demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
-}
-/* Sets what a contact does not use, and its row of coefficients, to 0, since files and messages
-   contain all of it. */
-static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
-    int e;
-    c->row = 0;
-    for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;
-    if (!c->odd) memset(&c->more, 0, sizeof c->more);
 }
 /* Visits persistent contacts, with or without a list, and the contact history of spheres that is
    saved between two lists (demi_filed). */
@@ -39017,38 +39284,6 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
                          "compiler with another memory layout; read it with a program built like "
                          "the one that wrote it", call, path);
     return DEM_OK;
-}
-/* Prints element k of a value in the form of the file, for an error message. digits: significant
-   digits of reals. */
-static void demi_row_print(const demi_field_row *r, const char *value, size_t k, int digits,
-                                 char *out, size_t size) {
-    const char *word = r->words;
-    int32_t i = 0;
-    uint64_t u;
-    dem_real x;
-    double d;
-    switch (r->type) {
-    case 'i': case 'e': case 'p':
-        memcpy(&i, value + 4*k, sizeof i);
-        for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
-            word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
-        if (word) { demi_words(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
-        memcpy(&i, value + 4*k, sizeof i);
-        demi_words(out, size, "%ld", (long)i);
-        break;
-    case 'u':
-        memcpy(&u, value + 8*k, sizeof u);
-        demi_words(out, size, "%llu", (unsigned long long)u);
-        break;
-    case 'd':
-        memcpy(&d, value + 8*k, sizeof d);
-        demi_words(out, size, "%.*g", digits, d);
-        break;
-    case 't': demi_words(out, size, "\"%.40s\"", value); break;
-    default:
-        memcpy(&x, value + sizeof x*k, sizeof x);
-        demi_words(out, size, "%.*g", digits, (double)x);
-    }
 }
 /* Fails with an error message that names a field and its values in the file (`there`) and in this
    world (`here`). of: the item, such as " of wall 2". */
@@ -39596,6 +39831,9 @@ static int demi_rails_check(const demi_reader *r) {
 /* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
    id of a body that no longer exists names nothing. */
 static int demi_joints_check(const demi_reader *r) {
+#ifdef DEM_NO_IMPULSES
+    return !r->t->joint_count || demi_lie(r, "joint", 0);
+#else
     int i, k;
     for (i = 0; i < r->t->joint_count; i++) {
         const demi_joint *j = &r->t->joints[i];
@@ -39614,6 +39852,7 @@ static int demi_joints_check(const demi_reader *r) {
             return demi_lie(r, "joint", i);
     }
     return 1;
+#endif
 }
 
 /* Checks the records of outputs: numbers must be within their range and times finite. */
@@ -40532,6 +40771,9 @@ DEM_API dem_output dem_output_every_add(dem_world *w, dem_output_kind kind, cons
     return dem_output_add(w, &desc);
 }
 
+#endif /* DEM_NO_FILES */
+#ifndef DEM_NO_REPORTS
+
 /* ---------------------------------------------------------------------------------------------
    >>check
    Validation of a scene before it runs (dem_world_check). Each function looks for likely mistakes
@@ -41332,6 +41574,8 @@ DEM_API int dem_world_check_print(dem_world *w, FILE *out) {
     return n;
 }
 
+#ifndef DEM_NO_TRIALS
+
 /* ---------------------------------------------------------------------------------------------
    >>trials
    Trials (dem_trials_run): how much a numerical choice costs and how much it changes the results,
@@ -41759,6 +42003,8 @@ DEM_API void dem_trials_print(const dem_trials *t, FILE *out) {
     demi_print(out, "advice     %s\n", t->advice);
 }
 
+#endif /* DEM_NO_TRIALS */
+
 /* ---------------------------------------------------------------------------------------------
    >>effects
    Effects: the laws and features that a scene may use (friction, walls, ledger, ...), one row each.
@@ -42183,6 +42429,21 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"outlets",          demi_look_outlets,      0,                       0},
     {"events",           demi_look_events,       demi_leave_events,       0}};
 
+/* Computes the states of all effects without their costs. look: a copy of struct dem_world, in
+   which the materials that have touched, or the laws in force, are brought up to date. */
+static void demi_effects_look(dem_world *look, dem_effect *out) {
+    int k;
+    if (look->stage.list_valid) demi_met_look(look, look->booked.met);
+    else demi_effects(look);
+    memset(out, 0, DEM_EFFECTS*sizeof *out);
+    for (k = 0; k < DEM_EFFECTS; k++) {
+        out[k].name = demi_effect_rows[k].name;
+        out[k].state = demi_effect_rows[k].look(look, &out[k]);
+        if (out[k].state == DEM_EFFECT_IDLE && !out[k].missing) out[k].missing = 1;
+    }
+}
+
+#ifndef DEM_NO_TRIALS
 /* --- costs of effects --- */
 
 /* Returns a copy of w in the saved state that keeps the present time step, after `leave` (or null)
@@ -42252,19 +42513,6 @@ static int demi_effect_cost(dem_world *w, const char *state, size_t size,
     out->error = (ratio[3*n/4] - ratio[n/4])/1.35*1.25/sqrt((double)n);
     return 1;
 }
-/* Computes the states of all effects without their costs. look: a copy of struct dem_world, in
-   which the materials that have touched, or the laws in force, are brought up to date. */
-static void demi_effects_look(dem_world *look, dem_effect *out) {
-    int k;
-    if (look->stage.list_valid) demi_met_look(look, look->booked.met);
-    else demi_effects(look);
-    memset(out, 0, DEM_EFFECTS*sizeof *out);
-    for (k = 0; k < DEM_EFFECTS; k++) {
-        out[k].name = demi_effect_rows[k].name;
-        out[k].state = demi_effect_rows[k].look(look, &out[k]);
-        if (out[k].state == DEM_EFFECT_IDLE && !out[k].missing) out[k].missing = 1;
-    }
-}
 /* dem_effects_get after its checks: states, then costs if there is a budget. */
 static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
     dem_result result = DEM_OK;
@@ -42333,150 +42581,14 @@ DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     demi_print(out, "effects, and the share of a step's time that each costs\n");
     demi_effects_lines(effects, out);
 }
+#endif /* DEM_NO_TRIALS */
 
 /* ---------------------------------------------------------------------------------------------
-   >>world
-   Creating a world, destroying it, and reporting on it. dem_world_create checks the desc.
-   Fields that are 0 are replaced by a choice, there or when a run begins; dem_world_report prints
-   these choices and the effects in use. It calls the same functions as a run, but on a copy of
-   struct dem_world, so a report changes nothing that a run uses. Every block that a world allocates
-   (demi_hold) is linked into one of two chains; dem_world_destroy frees both, so no array can be
-   forgotten.
+   >>report
+   Reports on a world: the choices that replaced fields that were 0, the effects in use, what
+   happened. It calls the same functions as a run, but on a copy of struct dem_world, so a report
+   changes nothing that a run uses.
    --------------------------------------------------------------------------------------------- */
-DEM_API const char *dem_result_name_get(dem_result r) {
-    static const char *names[] = {"ok", "bad argument", "out of memory", "file error",
-                                  "bad format", "time step too large",
-                                  "unstable", "stopped"};
-    return (int)r >= 0 && (size_t)r < sizeof names/sizeof *names ? names[r] : "unknown";
-}
-
-DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
-    if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
-        "began as DEM_WORLD_DESC";
-    const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
-    const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
-    int k;
-    const demi_field_row *bad = demi_rows_bad(0, demi_world_desc_rows, d, &k);
-    if (bad) return bad->refusal;
-    if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
-        !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
-        !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
-        return "dem_world_create: a contact law is not one of the enum values; start from "
-            "DEM_WORLD_DESC";
-    if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
-        (int)d->search >= DEMI_SEARCHES || (int)d->cone < 0 || d->cone > DEM_CONE_CONVEX ||
-        (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
-        return "dem_world_create: integrator, search, cone or solver is not one of the enum "
-            "values; start from DEM_WORLD_DESC";
-    for (k = 0; k < 3; k++)
-        if (d->boundary[k] != DEM_BOUNDARY_OPEN &&
-            (!(hi[k] > lo[k]) || !demi_bounded((double)lo[k]) || !demi_bounded((double)hi[k])))
-            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
-                "below domain.hi there, or one is beyond 1e15 m; set domain";
-    if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
-        return "dem_world_create: planar is 1, but the z boundary is not open; discs stay at z "
-            "= 0: leave it open";
-    if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
-        "library choose";
-    if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
-                    d->law_range_radii > 0 || d->law_who || d->law_rows))
-        return "dem_world_create: law_range, law_range_radii, law_who or law_rows is set, but law "
-            "is null; they apply only to a user-defined law: set law, or leave them 0";
-    if (d->law_rate && (!d->law || !d->law_who || !d->body_reals))
-        return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
-            "the rate at which your law changes the numbers of bodies: set all four, or leave it "
-            "null";
-    if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
-        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dt is 0 s; impulses have "
-            "no contact time to choose it from: set a dt in which grains move by less than a "
-            "tenth of their radius, such as 1e-3 s";
-    if (d->response == DEM_RESPONSE_IMPULSES &&
-        (d->law || (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
-                    d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
-        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but law or integrator is "
-            "set; impulses use neither: leave both 0";
-    if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
-        return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, "
-            "digits and _, separated by one space, such as \"temperature charge\"; null means none";
-    if (demi_names(d->groups, DEM_GROUPS) < 0)
-        return "dem_world_create: groups must be at most 32 words of at most 23 letters, digits "
-            "and _, separated by one space, such as \"coarse tracer\"; null means none";
-    if (demi_names(d->law_memory_names, d->law_memory) < 0)
-        return "dem_world_create: law_memory_names must be at most law_memory words of at most 23 "
-            "letters, digits and _, separated by one space; null means memory0, memory1, ...";
-    if (!demi_names(d->body_reals, DEM_BODY_REALS) && d->body_reals_fn)
-        return "dem_world_create: body_reals_fn is given, but body_reals names no numbers; name "
-            "them, or leave both 0";
-#ifdef __TINYC__
-    if (DEMI_SINGLE) return "dem_world_create: tcc 0.9.27 computes some float expressions "
-        "wrongly; compile with gcc or clang, or leave DEM_REAL at double";
-#endif
-    if (d->law_vectors < 0 || d->law_vectors > d->law_memory/3)
-        return "dem_world_create: law_vectors must be 0 to law_memory/3; increase law_memory, "
-            "which counts reals";
-    if (!d->allocator.alloc_fn != !d->allocator.free_fn)
-        return "dem_world_create: the allocator has only one of alloc_fn and free_fn; give both "
-            "or neither";
-    return "";
-}
-
-DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version,
-                                            size_t real_size) {
-    dem_world *w;
-    if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
-        *dem_world_create_error_get(desc)) return 0;
-    w = (dem_world *)demi_raw_alloc(0, &desc->allocator, sizeof *w);
-    if (!w) return 0;
-    memset(w, 0, sizeof *w);
-    w->desc = w->asked = *desc;
-    demi_names_own(w, desc);
-    w->bytes = sizeof *w;
-    if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
-    if (w->desc.planar) w->desc.gravity.z = 0;
-    if (demi_response_is(w, DEMI_MIDWAY)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
-    /* until there are bodies, by which demi_levels_choose decides */
-    if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
-    if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
-    w->crew.now = w->desc.threads;              /* until the first step */
-    w->crew.fixed = DEMI_CREW_FIXED;
-    demi_bodies_begin(w);
-    w->bodies.orienting = desc->orientations != 0;
-    w->bodies.backward = demi_integrator_of(w)->backward;
-    w->bodies.booked = desc->ledger && demi_integrator_of(w)->predicts;
-    w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
-                                      sizeof(demi_pair));
-    w->domains = (demi_domain *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
-    w->cross_incoming_start = (int *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS + 1, sizeof(int));
-    if (!w->pairs || !w->domains || !w->cross_incoming_start) {
-        dem_world_destroy(w);
-        return 0;
-    }
-    return w;
-}
-
-DEM_API void dem_world_destroy(dem_world *w) {
-    dem_allocator allocator;
-    int chain;
-    if (demi_null(w, __func__, w, "world")) return;
-    if (w->look.under_way) {
-        demi_refuse(w, __func__, "called from the function of an output "
-                    "(dem_output_add) while the world runs; return 1 from that function to stop "
-                    "the run, then destroy the world");
-        return;
-    }
-    demi_calls(w, __func__, 1);                 /* the allocator sees an incomplete world */
-    for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
-    allocator = w->desc.allocator;
-    demi_raw_free(0, &allocator, w, sizeof *w);
-}
-
-DEM_API const char *dem_world_error_get(const dem_world *w) {
-    if (!w) return "dem_world_create: the world is null, because dem_world_create failed; "
-        "dem_world_create_error_get(desc) says why";
-    ((dem_world *)w)->refused = 0;              /* the message has been read */
-    return w->error;
-}
-
 /* Prints the levels of a hierarchical grid, and the estimated work of a search with levels and
    with one grid. */
 static void demi_levels_report(const dem_world *w, FILE *out) {
@@ -42630,6 +42742,7 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                    w->cell.strain[2], w->cell.sheared, w->cell.rate[0], w->cell.rate[1],
                    w->cell.rate[2], w->cell.shear, w->cell.stress[0], w->cell.stress[1],
                    w->cell.stress[2]);
+#ifndef DEM_NO_IMPULSES
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;
@@ -42638,6 +42751,7 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                    (double)demi_length(j->torque), (double)j->motor_torque, (double)j->power,
                    (double)j->gap);
     }
+#endif
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;
         demi_print(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
@@ -42744,6 +42858,9 @@ DEM_API void dem_world_report(const dem_world *w, FILE *out) {
     demi_report(w, out);
     demi_called(w, was);
 }
+
+#endif /* DEM_NO_REPORTS */
+#ifndef DEM_NO_SLABS
 
 /* ---------------------------------------------------------------------------------------------
    >>slabs
@@ -44508,6 +44625,9 @@ DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
     return c;
 }
 
+#endif /* DEM_NO_SLABS */
+#ifndef DEM_NO_REPLAY
+
 /* ---------------------------------------------------------------------------------------------
    >>viewer
    The web page that plays a replay, as C strings. It is a copy of examples/replay/viewer.html
@@ -45660,7 +45780,9 @@ DEM_API dem_result dem_replay_close(dem_replay *r) {
         demi_film_resolve(r, &b);
     }
     fputs("<script type=\"dem/report\">", r->out.file);
+#ifndef DEM_NO_REPORTS
     dem_world_report(r->world, r->out.file);
+#endif
     fputs("</script>\n", r->out.file);
     r->out.call = __func__;
     result = demi_out_close(&r->out);
@@ -45674,6 +45796,10 @@ DEM_API dem_result dem_replay_close(dem_replay *r) {
 #pragma GCC pop_options
 #endif
 
+#endif /* DEM_NO_REPLAY */
+#ifdef DEMI_LESS
+#pragma GCC diagnostic pop
+#endif
 #pragma pop_macro("Y")
 #pragma pop_macro("X")
 #pragma pop_macro("W")

@@ -30,6 +30,7 @@
        >>state             the state of a world, and short questions about it
        >>memory            arrays of each body, errors, allocation
        >>rows              a row for each field of a desc: its limits and what is done with it
+       >>stream            bytes that are written, read, counted or hashed
        >>team              the worlds that step together: a single world, or slabs
      law/ - contact laws and materials
        >>laws              table of the built-in contact laws and their coefficients
@@ -107,7 +108,9 @@
      >>services - volume II: what reads a world, writes it, shares it out; no step calls it
      measure/ - what a world is like
        >>measure           counters, contacts, angle of repose, the digest
+       >>parts             the scene as rows of fields: what checkpoints and slabs compare
        >>mixing            mixing and segregation of two components
+       >>impacts           spectra of impact energies, wear
      file/ - reading and writing
        >>outlines          polygons with many corners cut into triangles
        >>read              reading meshes and profiles
@@ -116,7 +119,6 @@
        >>read-grains       reading grains: text, CSV, XYZ, dumps, VTK, VTP
        >>write             writing VTP, VTK, XYZ and CSV
        >>tables            tables of bodies, contacts, fields and residence times (CSV)
-       >>impacts           spectra of impact energies and wear, as numbers and CSV
        >>checkpoint        writing the complete state, bit for bit
        >>restore           checking and reading a checkpoint
        >>changed           reading a checkpoint into a world that differs
@@ -202,6 +204,13 @@
 #undef W
 #undef X
 #undef Y
+/* With a switch, some private functions have no user. */
+#if defined(DEM_NO_FILES) || defined(DEM_NO_REPORTS) || defined(DEM_NO_SLABS) || \
+    defined(DEM_NO_REPLAY) || defined(DEM_NO_IMPULSES) || defined(DEM_NO_TRIALS)
+#define DEMI_LESS
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
 
 #include "core/platform.h"
 #include "core/printing.h"
@@ -210,6 +219,7 @@
 #include "core/state.h"
 #include "core/memory.h"
 #include "core/rows.h"
+#include "core/stream.h"
 #include "core/team.h"
 #include "law/laws.h"
 #include "law/materials.h"
@@ -252,11 +262,13 @@
 #include "contact/kept.h"
 #include "contact/kept-respond.h"
 #include "contact/members.h"
+#ifndef DEM_NO_IMPULSES
 #include "impulse/impulses.h"
 #include "impulse/joints.h"
 #include "impulse/joints-solved.h"
 #include "impulse/solvers.h"
 #include "impulse/impulses-told.h"
+#endif /* DEM_NO_IMPULSES */
 #include "scene/sizes.h"
 #include "scene/placing.h"
 #include "scene/groups.h"
@@ -281,7 +293,10 @@
    this line calls one below.
    ============================================================================================== */
 #include "measure/measure.h"
+#include "measure/parts.h"
 #include "measure/mixing.h"
+#include "measure/impacts.h"
+#ifndef DEM_NO_FILES
 #include "file/outlines.h"
 #include "file/read.h"
 #include "file/decompose.h"
@@ -289,21 +304,32 @@
 #include "file/read-grains.h"
 #include "file/write.h"
 #include "file/tables.h"
-#include "file/impacts.h"
 #include "file/checkpoint.h"
 #include "file/restore.h"
 #include "file/changed.h"
 #include "file/output.h"
+#endif /* DEM_NO_FILES */
+#ifndef DEM_NO_REPORTS
 #include "report/check.h"
+#ifndef DEM_NO_TRIALS
 #include "report/trials.h"
+#endif /* DEM_NO_TRIALS */
 #include "report/effects.h"
 #include "report/report.h"
+#endif /* DEM_NO_REPORTS */
+#ifndef DEM_NO_SLABS
 #include "slab/slabs.h"
 #include "slab/slabs-step.h"
 #include "slab/slabs-run.h"
 #include "slab/deal.h"
+#endif /* DEM_NO_SLABS */
+#ifndef DEM_NO_REPLAY
 #include "replay/viewer.h"
 #include "replay/replay.h"
+#endif /* DEM_NO_REPLAY */
+#ifdef DEMI_LESS
+#pragma GCC diagnostic pop
+#endif
 #pragma pop_macro("Y")
 #pragma pop_macro("X")
 #pragma pop_macro("W")

@@ -45,6 +45,21 @@ typedef DEM_REAL dem_real;
 #define DEM_ZERO {0}
 #endif
 
+/* Switches: what a program does not need may be left out of it (manual, 14). A function that is
+   switched off is not declared. No struct changes, so files with other switches may be linked. */
+#ifdef DEM_CORE
+#define DEM_NO_FILES
+#define DEM_NO_REPORTS
+#define DEM_NO_SLABS
+#define DEM_NO_IMPULSES
+#endif
+#if defined(DEM_NO_FILES) && !defined(DEM_NO_REPLAY)
+#define DEM_NO_REPLAY                   /* writes a file */
+#endif
+#if (defined(DEM_NO_FILES) || defined(DEM_NO_REPORTS)) && !defined(DEM_NO_TRIALS)
+#define DEM_NO_TRIALS                   /* reports on copies, which are made as checkpoints are */
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

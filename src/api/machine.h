@@ -265,6 +265,7 @@ typedef struct dem_joint_state {
     double turned;                 /* rad, of a against b about axis since the joint was added */
     double work;                   /* J, of the motor */
 } dem_joint_state;
+#ifndef DEM_NO_IMPULSES
 /* Adds a joint. It is an error if the response is DEM_RESPONSE_SPRINGS, if neither of the two can
    move, or if a sphere is joined without desc.orientations. A joint ends when one of its bodies or
    its wall is removed or leaves; its id is then invalid and is never used again. While both bodies
@@ -278,6 +279,7 @@ DEM_API dem_result dem_joint_motor_set(dem_world *world, dem_joint joint, dem_mo
 DEM_API dem_result dem_joint_get(const dem_world *world, dem_joint joint, dem_joint_state *state);
 /* Removes a joint. */
 DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
+#endif /* DEM_NO_IMPULSES */
 
 /* ---- rails ---- */
 /* A rail locks axes of a body: along and about them it does not respond to forces, but moves as

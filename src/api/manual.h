@@ -383,6 +383,19 @@
                             slower unless compiled for AVX2, same bits
        DEM_DOMAIN_BODIES    approximate number of spheres per work group (2048); changes the bits
 
+   Switches leave out what a program does not need: less code, a shorter compilation, the same bits.
+   A function that is switched off is not declared, so its use is a compile error with its name. No
+   struct changes, so files compiled with different switches may be linked.
+
+       DEM_NO_FILES         reading and writing of files, checkpoints, outputs; no replays and no
+                            trials either
+       DEM_NO_REPLAY        replays in a browser
+       DEM_NO_REPORTS       dem_world_check, dem_effects_get, dem_world_report; no trials either
+       DEM_NO_TRIALS        dem_trials_run, and the costs of effects
+       DEM_NO_SLABS         one scene on several threads or processes as slabs
+       DEM_NO_IMPULSES      rigid grains: dem_world_create refuses DEM_RESPONSE_IMPULSES; no joints
+       DEM_CORE             all of these
+
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
    (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh
    format (>>add-format), effect in the report (>>add-effect), array with a value for each body

@@ -4,6 +4,7 @@
    one scene among processors. What a scene contains and what it costs. Errors are as in >>run.
    --------------------------------------------------------------------------------------------- */
 
+#ifndef DEM_NO_FILES
 /* ---- files ---- */
 
 /* Defects of a mesh, as counted on reading. They never stop a run. */
@@ -184,6 +185,8 @@ DEM_API dem_result dem_field_csv_write(dem_world *world, dem_field field, const 
 DEM_API dem_result dem_outlet_residence_csv_write(dem_world *world, dem_outlet outlet,
                                                   const char *path);
 
+#endif /* DEM_NO_FILES */
+#ifndef DEM_NO_REPLAY
 /* ---- replay: a run in one HTML file ---- */
 
 /* A replay plays in any browser, without network or other files. It shows grains of every shape,
@@ -241,6 +244,8 @@ DEM_API dem_result dem_replay_value_set(dem_replay *replay, const char *name, do
    DEM_ERROR_MEMORY. */
 DEM_API dem_result dem_replay_close(dem_replay *replay);
 
+#endif /* DEM_NO_REPLAY */
+#ifndef DEM_NO_FILES
 /* ---- checkpoints ---- */
 
 /* Writes a checkpoint: the whole state, with bodies, walls, contact history, neighbour list,
@@ -272,6 +277,7 @@ DEM_API dem_result dem_checkpoint_read_changed(dem_world *world, const char *pat
    "dt: 1e-05 there, 2e-05 here", or "". */
 DEM_API const char *dem_checkpoint_changes_get(const dem_world *world);
 
+#endif /* DEM_NO_FILES */
 /* ---- outputs on a schedule ---- */
 
 /* A scheduled output. */
@@ -325,6 +331,7 @@ typedef struct dem_output_desc {
 } dem_output_desc;
 static const dem_output_desc DEM_OUTPUT_DESC_ZERO = DEM_ZERO;
 #define DEM_OUTPUT_DESC DEM_OUTPUT_DESC_ZERO
+#ifndef DEM_NO_FILES
 /* Adds an output that a run writes automatically, at the steps nearest to start, start + interval
    and so on, in the order in which outputs were added. The first line of a CSV file replaces an
    older file of that name; a file with other columns is an error of the run. If a file cannot be
@@ -345,6 +352,8 @@ DEM_API dem_output dem_output_every_add(dem_world *world, dem_output_kind kind, 
    remove it and add another. The function of an output may remove any output, also its own. */
 DEM_API dem_result dem_output_remove(dem_world *world, dem_output output);
 
+#endif /* DEM_NO_FILES */
+#ifndef DEM_NO_SLABS
 /* ---- slabs: one scene on many processors ---- */
 
 /* How slabs in different processes communicate; all zero for a single process. Processes form a
@@ -426,6 +435,8 @@ typedef struct dem_slabs_counters {
 /* Returns the counters of slabs. */
 DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *slabs);
 
+#endif /* DEM_NO_SLABS */
+#ifndef DEM_NO_REPORTS
 /* ---- effects: what a scene contains, what has happened, and what each effect costs ---- */
 
 /* The state of an effect. */
@@ -448,6 +459,7 @@ typedef struct dem_effect {
 } dem_effect;
 /* Number of effects. */
 enum { DEM_EFFECTS = 19 };
+#ifndef DEM_NO_TRIALS
 /* Writes for every effect whether it is off, idle or active, and returns their number. It finds a
    material with rolling friction on which nothing has rolled, or a wall that nothing has touched.
    It can miss contacts of spheres that begin and end between two neighbour lists. If `budget` (s of
@@ -460,6 +472,7 @@ DEM_API int dem_effects_get(dem_world *world, double budget, dem_effect effects[
 /* Prints the effects as lines of text. A share outside -0.1 to 1, or with an error above 0.1, is
    printed as "too noisy". */
 DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
+#endif /* DEM_NO_TRIALS */
 
 /* ---- report ---- */
 
@@ -468,6 +481,7 @@ DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
    walls, joints, feeds, outlets, and the ledger. It calls a user-defined force field and
    desc.growth once per body. */
 DEM_API void dem_world_report(const dem_world *world, FILE *out);
+#endif /* DEM_NO_REPORTS */
 
 /* Creates a world if `version` and `real_size` (bytes of dem_real) are those of the implementation,
    and returns null otherwise. Call dem_world_create, which passes both. */

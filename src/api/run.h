@@ -34,6 +34,7 @@ typedef struct dem_advice {
    error if no grain can move, or with DEM_RESPONSE_IMPULSES, where contacts have no duration. */
 DEM_API dem_result dem_step_advice_get(const dem_world *world, dem_advice *advice);
 
+#ifndef DEM_NO_REPORTS
 /* How serious a finding of dem_world_check is. */
 typedef enum dem_severity {
     DEM_SEVERITY_NOTE = 1,     /* possibly not intended */
@@ -63,6 +64,7 @@ DEM_API int dem_world_check(dem_world *world, dem_finding *findings, int capacit
 /* Prints the first 16 findings of dem_world_check, one per line (nothing if there are none), and
    returns how many it found. */
 DEM_API int dem_world_check_print(dem_world *world, FILE *out);
+#endif /* DEM_NO_REPORTS */
 
 /* ---- run ---- */
 
@@ -241,6 +243,7 @@ typedef struct dem_totals {
 /* Computes the totals in one pass over the bodies. */
 DEM_API dem_totals dem_totals_get(const dem_world *world);
 
+#ifndef DEM_NO_TRIALS
 /* ---- trials: what accuracy costs in your scene ---- */
 
 /* Returns one number by which a world is judged, an observable. Averages over many grains or a long
@@ -330,6 +333,7 @@ DEM_API dem_result dem_trials_run(dem_world *world, const dem_trials_desc *desc,
                                   dem_trials *trials);
 /* Prints the trials as a table, and the advice. */
 DEM_API void dem_trials_print(const dem_trials *trials, FILE *out);
+#endif /* DEM_NO_TRIALS */
 
 /* ---- contacts ---- */
 
@@ -457,9 +461,11 @@ typedef struct dem_impacts {
    any. An error if contacts are not recorded. */
 DEM_API dem_result dem_impacts_get(dem_world *world, dem_material a, dem_material b,
                                    dem_impacts *impacts);
+#ifndef DEM_NO_FILES
 /* Writes the spectra of all pairs of materials that have touched to a CSV file. A line per bin that
    is not empty: material_a, material_b, from, to (J), impacts, losses (both 1/s), power (W). */
 DEM_API dem_result dem_impacts_csv_write(dem_world *world, const char *path);
+#endif /* DEM_NO_FILES */
 
 /* Wear of a wall since recording began. */
 typedef struct dem_wear {

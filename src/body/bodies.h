@@ -837,3 +837,21 @@ DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
     memset(&none, 0, sizeof none);
     return w ? w->bodies.balance : none;
 }
+/* Returns the index of the body with this id, or -1 if it does not exist (any more). */
+static int demi_body_find(const dem_world *w, dem_body b) {
+    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
+        w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
+    return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
+}
+/* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
+   they have no contact. Needs no solver; demi_joined is faster within a step. */
+static int demi_parted(const dem_world *w, int a, int b, int wall) {
+    int k, found = 0;
+    for (k = 0; k < w->joint_count && !found; k++) {
+        const dem_joint_desc *j = &w->joints[k].desc;
+        const int p = demi_body_find(w, j->a), q = j->b.slot ? demi_body_find(w, j->b) : -1;
+        found = !j->collide && (b < 0 ? p == a && !j->b.slot && j->wall.id == w->walls[wall].id
+                                : (p == a && q == b) || (p == b && q == a));
+    }
+    return found;
+}

@@ -814,3 +814,11 @@ static int demi_touch(dem_world *w) {
     } while (again);
     return 1;
 }
+/* Sets what a contact does not use, and its row of coefficients, to 0, since files and messages
+   contain all of it. */
+static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
+    int e;
+    c->row = 0;
+    for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;
+    if (!c->odd) memset(&c->more, 0, sizeof c->more);
+}

@@ -405,10 +405,17 @@ enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_NORMAL = 11, DEMI_IMPULSE_LOST = 1
 #define DEMI_RESPONSES(X) \
     X("springs", 0, 0, DEMI_LAWS | DEMI_LASTING | DEMI_PRESSING, \
       demi_springs_settle, 0, demi_springs, 0, demi_ledger_book, demi_springs_info) \
+    DEMI_IMPULSE_RESPONSE(X) \
+    /* the last */
+#ifdef DEM_NO_IMPULSES
+#define DEMI_IMPULSE_RESPONSE(X)
+#define demi_joints_in_force(w) 0
+#else
+#define DEMI_IMPULSE_RESPONSE(X) \
     X("impulses", DEMI_IMPULSE_REALS, 0x383f, DEMI_MIDWAY | DEMI_FORESEEN | DEMI_JOINTED, \
       demi_impulses_settle, demi_impulses_room, 0, demi_impulses, demi_impulses_due, \
-      demi_impulses_info) \
-    /* the last */
+      demi_impulses_info)
+#endif
 typedef struct demi_response_kind {
     const char *name;
     int memory, vectors, traits;

@@ -235,7 +235,7 @@ typedef struct demi_lookers {
                                       copy, the head of slabs; null: this one */
     int tenths_told;               /* progress into a file: last tenth of this run reported */
     int under_way;                 /* > 0: an output runs a user-defined function; steps fail */
-    dem_replay *films;             /* open replays, which record frames automatically */
+    struct dem_replay *films;             /* open replays, which record frames automatically */
     void (*films_look)(dem_world *w);           /* records their frames; null: no replays */
     int output_count, reads;       /* reads: number of checkpoints read so far */
     int32_t output_last;           /* the last id given to an output */
@@ -623,4 +623,11 @@ DEM_INLINE int demi_exchanges(const dem_world *w) {
 DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
     if (demi_reach_free(w)) return (dem_real)w->margin.reach;
     return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
+}
+/* Returns the energy `what`, J, of the coming step, summed over all domains. */
+static double demi_sum_energy(const dem_world *w, int what) {
+    double sum = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
+    return sum;
 }

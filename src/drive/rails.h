@@ -325,7 +325,7 @@ static void demi_rails_carry(dem_world *w, int of, const dem_pose *mid, const de
 /* Returns the number of rails whose bodies still exist. */
 static int demi_rails_in_force(const dem_world *w) {
     int k, n = 0;
-    for (k = 0; k < w->rail_count; k++) n += demi_joint_body(w, w->rails[k].body) >= 0;
+    for (k = 0; k < w->rail_count; k++) n += demi_body_find(w, w->rails[k].body) >= 0;
     return n;
 }
 /* Removes the rails of bodies that were removed, and that of `body`. */

@@ -227,13 +227,6 @@ static void demi_impulses_fixed(dem_world *w) {
             }
         }
 }
-/* Returns the energy `what`, J, of the coming step, summed over all domains. */
-static double demi_sum_energy(const dem_world *w, int what) {
-    double sum = 0;
-    int d;
-    for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
-    return sum;
-}
 /* Largest number of rounds of demi_impulses_tame. */
 enum { DEMI_TAMINGS = 8 };
 /* Mends the two kinds of contacts that may add energy, and returns their number. Newton's
@@ -337,15 +330,6 @@ static void demi_impulses_due(dem_world *w) {
     }
     for (i = 0; i < w->wall_count; i++)
         w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
-}
-/* Books the energies due in the ledger, once bodies have moved. With springs they are 0. */
-static void demi_due_book(dem_world *w) {
-    static const int flows[5] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS,
-                                 DEMI_E_FORCE};
-    int i;
-    for (i = 0; i < 5; i++) w->booked.energy[flows[i]] += w->booked.due[i];
-    w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
-    w->booked.throughput += fabs(w->booked.due[3]) + fabs(w->booked.due[4]);
 }
 /* Returns 1 if entry p of domain d's pruned neighbour list has an impulse or overlaps, and fills
    *out and *gap unless out is null: see demi_response_row. The normal of a constraint is that of

@@ -121,8 +121,8 @@ static int demi_joints_room(dem_world *w) {
     for (i = 0; i < n; i++) {
         const dem_joint_desc *d = &w->joints[i].desc;
         demi_rod *r = s->rods + i;
-        const int body[2] = {demi_joint_body(w, d->a),
-                             d->b.slot ? demi_joint_body(w, d->b) : -1};
+        const int body[2] = {demi_body_find(w, d->a),
+                             d->b.slot ? demi_body_find(w, d->b) : -1};
         memset(r, 0, sizeof *r);
         r->a = body[0];
         r->b = body[1] >= 0 ? body[1] : w->bodies.count + w->kept_first[DEMI_DOMAINS] + i;

@@ -39,28 +39,10 @@ enum { DEMI_JOINT_KINDS = sizeof demi_joint_kinds/sizeof *demi_joint_kinds };
 static int demi_joint_rows(dem_joint_kind kind) {
     return (int)kind > 0 && (int)kind < DEMI_JOINT_KINDS ? demi_joint_kinds[kind] : 0;
 }
-/* Returns the index of the body with this id, or -1 if it does not exist (any more). */
-static int demi_joint_body(const dem_world *w, dem_body b) {
-    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
-        w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
-    return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
-}
-/* True if a joint without `collide` connects bodies a and b (b < 0: body a and the wall), so that
-   they have no contact. Needs no solver; demi_joined is faster within a step. */
-static int demi_parted(const dem_world *w, int a, int b, int wall) {
-    int k, found = 0;
-    for (k = 0; k < w->joint_count && !found; k++) {
-        const dem_joint_desc *j = &w->joints[k].desc;
-        const int p = demi_joint_body(w, j->a), q = j->b.slot ? demi_joint_body(w, j->b) : -1;
-        found = !j->collide && (b < 0 ? p == a && !j->b.slot && j->wall.id == w->walls[wall].id
-                                : (p == a && q == b) || (p == b && q == a));
-    }
-    return found;
-}
 /* True if both bodies of a joint, or its body and its wall, still exist. */
 static int demi_joint_alive(const dem_world *w, const demi_joint *j) {
-    if (demi_joint_body(w, j->desc.a) < 0) return 0;
-    if (j->desc.b.slot) return demi_joint_body(w, j->desc.b) >= 0;
+    if (demi_body_find(w, j->desc.a) < 0) return 0;
+    if (j->desc.b.slot) return demi_body_find(w, j->desc.b) >= 0;
     return !j->desc.wall.id || demi_wall_there(w, j->desc.wall);
 }
 /* Returns the number of joints whose bodies and walls still exist. */

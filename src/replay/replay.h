@@ -611,7 +611,9 @@ DEM_API dem_result dem_replay_close(dem_replay *r) {
         demi_film_resolve(r, &b);
     }
     fputs("<script type=\"dem/report\">", r->out.file);
+#ifndef DEM_NO_REPORTS
     dem_world_report(r->world, r->out.file);
+#endif
     fputs("</script>\n", r->out.file);
     r->out.call = __func__;
     result = demi_out_close(&r->out);

@@ -422,6 +422,21 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"outlets",          demi_look_outlets,      0,                       0},
     {"events",           demi_look_events,       demi_leave_events,       0}};
 
+/* Computes the states of all effects without their costs. look: a copy of struct dem_world, in
+   which the materials that have touched, or the laws in force, are brought up to date. */
+static void demi_effects_look(dem_world *look, dem_effect *out) {
+    int k;
+    if (look->stage.list_valid) demi_met_look(look, look->booked.met);
+    else demi_effects(look);
+    memset(out, 0, DEM_EFFECTS*sizeof *out);
+    for (k = 0; k < DEM_EFFECTS; k++) {
+        out[k].name = demi_effect_rows[k].name;
+        out[k].state = demi_effect_rows[k].look(look, &out[k]);
+        if (out[k].state == DEM_EFFECT_IDLE && !out[k].missing) out[k].missing = 1;
+    }
+}
+
+#ifndef DEM_NO_TRIALS
 /* --- costs of effects --- */
 
 /* Returns a copy of w in the saved state that keeps the present time step, after `leave` (or null)
@@ -491,19 +506,6 @@ static int demi_effect_cost(dem_world *w, const char *state, size_t size,
     out->error = (ratio[3*n/4] - ratio[n/4])/1.35*1.25/sqrt((double)n);
     return 1;
 }
-/* Computes the states of all effects without their costs. look: a copy of struct dem_world, in
-   which the materials that have touched, or the laws in force, are brought up to date. */
-static void demi_effects_look(dem_world *look, dem_effect *out) {
-    int k;
-    if (look->stage.list_valid) demi_met_look(look, look->booked.met);
-    else demi_effects(look);
-    memset(out, 0, DEM_EFFECTS*sizeof *out);
-    for (k = 0; k < DEM_EFFECTS; k++) {
-        out[k].name = demi_effect_rows[k].name;
-        out[k].state = demi_effect_rows[k].look(look, &out[k]);
-        if (out[k].state == DEM_EFFECT_IDLE && !out[k].missing) out[k].missing = 1;
-    }
-}
 /* dem_effects_get after its checks: states, then costs if there is a budget. */
 static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
     dem_result result = DEM_OK;
@@ -572,3 +574,4 @@ DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     demi_print(out, "effects, and the share of a step's time that each costs\n");
     demi_effects_lines(effects, out);
 }
+#endif /* DEM_NO_TRIALS */

@@ -157,6 +157,7 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                    w->cell.strain[2], w->cell.sheared, w->cell.rate[0], w->cell.rate[1],
                    w->cell.rate[2], w->cell.shear, w->cell.stress[0], w->cell.stress[1],
                    w->cell.stress[2]);
+#ifndef DEM_NO_IMPULSES
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;
@@ -165,6 +166,7 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                    (double)demi_length(j->torque), (double)j->motor_torque, (double)j->power,
                    (double)j->gap);
     }
+#endif
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;
         demi_print(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,

@@ -118,3 +118,12 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
     for (i = 0; i < 3 && t.mass > 0; i++) t.centre[i] /= t.mass;
     return t;
 }
+/* Books the energies due in the ledger, once bodies have moved. With springs they are 0. */
+static void demi_due_book(dem_world *w) {
+    static const int flows[5] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS,
+                                 DEMI_E_FORCE};
+    int i;
+    for (i = 0; i < 5; i++) w->booked.energy[flows[i]] += w->booked.due[i];
+    w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
+    w->booked.throughput += fabs(w->booked.due[3]) + fabs(w->booked.due[4]);
+}

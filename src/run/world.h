@@ -26,7 +26,7 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
             "DEM_WORLD_DESC";
     if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
         (int)d->search >= DEMI_SEARCHES || (int)d->cone < 0 || d->cone > DEM_CONE_CONVEX ||
-        (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
+        (int)d->solver < 0 || d->solver > DEM_SOLVER_SPECTRAL)
         return "dem_world_create: integrator, search, cone or solver is not one of the enum "
             "values; start from DEM_WORLD_DESC";
     for (k = 0; k < 3; k++)
@@ -47,6 +47,11 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
         return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
             "the rate at which your law changes the numbers of bodies: set all four, or leave it "
             "null";
+#ifdef DEM_NO_IMPULSES
+    if (d->response == DEM_RESPONSE_IMPULSES)
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dem.h was compiled with "
+            "DEM_NO_IMPULSES; compile it without that switch, or use springs";
+#endif
     if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
         return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dt is 0 s; impulses have "
             "no contact time to choose it from: set a dt in which grains move by less than a "

@@ -1,7 +1,7 @@
 /* ---------------------------------------------------------------------------------------------
    >>impacts
    Measurements of recorded contacts (>>events): spectra of impact energies, collision rates, wear.
-   Reads w->events only, and writes CSV files.
+   Reads w->events only.
    --------------------------------------------------------------------------------------------- */
 
 /* Returns the lower limit of a bin, J. */
@@ -48,34 +48,6 @@ DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
     }
     out->rate = out->seconds > 0 ? out->ended/out->seconds : 0;
     return DEM_OK;
-}
-DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
-    demi_out out;
-    dem_result result;
-    double seconds;
-    char number[5][40];
-    int a, b, i, k;
-    if (demi_null_write(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
-    result = demi_events_needed(w, __func__);
-    if (result == DEM_OK) result = demi_out_open(&out, w, __func__, path);
-    if (result != DEM_OK) return result;
-    seconds = DEMI_MAX(w->clock.time - w->events.n.since, 1e-300);
-    fprintf(out.file, "material_a,material_b,from,to,impacts,losses,power\n");
-    for (a = 0; a < w->material_count; a++)
-        for (b = a; b < w->material_count; b++)
-            for (i = 0; i < w->events.n.pairs; i++) {
-                const demi_impacts *p = &w->events.pairs[i];
-                for (k = 0; k < DEM_IMPACT_BINS && p->a == a && p->b == b; k++) {
-                    if (!(p->impacts[k] > 0) && !(p->losses[k] > 0)) continue;
-                    fprintf(out.file, "%d,%d,%s,%s,%s,%s,%s\n", a + 1, b + 1,
-                            demi_format_real(number[0], demi_impact_limit(k), 6),
-                            demi_format_real(number[1], demi_impact_limit(k + 1), 6),
-                            demi_format_real(number[2], p->impacts[k]/seconds, 9),
-                            demi_format_real(number[3], p->losses[k]/seconds, 9),
-                            demi_format_real(number[4], p->energy[k]/seconds, 9));
-                }
-            }
-    return demi_out_close(&out);
 }
 
 /* Returns the wear of a wall; null if nothing has been recorded on it. Fails, with *result, if
