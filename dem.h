@@ -683,9 +683,13 @@ typedef DEM_REAL dem_real;
 /* Switches: what a program does not need may be left out of it (manual, 14). A function that is
    switched off is not declared. No struct changes, so files with other switches may be linked. */
 #ifdef DEM_CORE
+#undef DEM_NO_FILES
 #define DEM_NO_FILES
+#undef DEM_NO_REPORTS
 #define DEM_NO_REPORTS
+#undef DEM_NO_SLABS
 #define DEM_NO_SLABS
+#undef DEM_NO_IMPULSES
 #define DEM_NO_IMPULSES
 #endif
 #if defined(DEM_NO_FILES) && !defined(DEM_NO_REPLAY)

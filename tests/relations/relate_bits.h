@@ -222,9 +222,8 @@ static int rel_zero_epsd(const rel_case *c, rel_scene *s, int on) {
     return rel_zero_rolling(c, s, DEM_ROLLING_EPSD, on);
 }
 /* Static friction that is not larger than friction. Pairs have the friction of their materials, because a pair of
-   its own keeps the mixed friction_static, which must be >= its friction ("start from dem_pair_get and change only what "
-       "differs",
-   dem_pair_set). */
+   its own keeps the mixed friction_static, which must be >= its friction ("start from dem_pair_get and change only
+   what differs", dem_pair_set). */
 static int rel_zero_static(const rel_case *c, rel_scene *s, int on) {
     int i;
     (void)c;
