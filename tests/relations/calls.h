@@ -424,12 +424,13 @@ enum { REL_WORLD, REL_MATERIAL, REL_PAIR, REL_ELLIPSOID, REL_CLUSTER, REL_POLYHE
        REL_PROFILE, REL_GRAINS, REL_SIEVE, REL_MOTION, REL_BELT, REL_WALL_REMOVE, REL_JOINT, REL_FEED, REL_OUTLET,
        REL_FIELD, REL_GRAVITY, REL_CELL, REL_TABLE, REL_FEED_SIZES, REL_PUSH, REL_GROUP, REL_BONDS, REL_SERVICE_NAMES,
        REL_CALLS };
+/* zero_at: null, or an A with the defaults; a compiler warns if it is of another type. */
 #define C_(name, A, zero_at, makes, type, desc, zero, text) \
-    {"dem_" #name, rel_f_##name, REL_N(rel_f_##name), sizeof(A), zero_at, rel_do_##name, makes, type, desc, zero, text}
+    {"dem_" #name, rel_f_##name, REL_N(rel_f_##name), sizeof(A) + 0*sizeof(1 ? (zero_at) : (const A *)0), zero_at, rel_do_##name, makes, type, desc, zero, text}
 static int32_t rel_do_world(dem_world *w, void *at) { (void)w; (void)at; return 1; }        /* run.h creates it */
 static const rel_call rel_calls[REL_CALLS] = {
     C_(world, rel_a_world, 0, "", "", "dem_world_desc", "DEM_WORLD_DESC", "w = dem_world_create(&d)"),
-    C_(material, rel_a_material, &DEM_MATERIAL_DESC, "m", "dem_material", "dem_material_desc", "DEM_MATERIAL_DESC",
+    C_(material, rel_a_material, 0, "m", "dem_material", "dem_material_desc", "DEM_MATERIAL_DESC",
        "dem_material_add(w, &d)"),
     C_(pair, rel_a_pair, 0, "", "", "dem_pair", "{0}", "dem_pair_set(w, $a, $b, &d)"),
     C_(ellipsoid, rel_a_ellipsoid, 0, "s", "dem_shape", "", "", "dem_shape_ellipsoid_add(w, $axes)"),
@@ -463,12 +464,12 @@ static const rel_call rel_calls[REL_CALLS] = {
     C_(motion, rel_a_motion, &rel_motion_0, "", "", "dem_motion", "DEM_MOTION", "dem_wall_motion_set(w, $wall, &d)"),
     C_(belt, rel_a_motion, &rel_motion_0, "", "", "", "", "dem_wall_surface_velocity_set(w, $wall, $velocity)"),
     C_(wall_remove, rel_a_motion, &rel_motion_0, "", "", "", "", "dem_wall_remove(w, $wall)"),
-    C_(joint, rel_a_joint, &DEM_JOINT_DESC, "j", "dem_joint", "dem_joint_desc", "DEM_JOINT_DESC",
+    C_(joint, rel_a_joint, 0, "j", "dem_joint", "dem_joint_desc", "DEM_JOINT_DESC",
         "dem_joint_add(w, &d)"),
-    C_(feed, rel_a_feed, &DEM_FEED_DESC, "f", "dem_feed", "dem_feed_desc", "DEM_FEED_DESC", "dem_feed_add(w, &d)"),
-    C_(outlet, rel_a_outlet, &DEM_OUTLET_DESC, "o", "dem_outlet", "dem_outlet_desc", "DEM_OUTLET_DESC",
+    C_(feed, rel_a_feed, 0, "f", "dem_feed", "dem_feed_desc", "DEM_FEED_DESC", "dem_feed_add(w, &d)"),
+    C_(outlet, rel_a_outlet, 0, "o", "dem_outlet", "dem_outlet_desc", "DEM_OUTLET_DESC",
        "dem_outlet_add(w, &d)"),
-    C_(field, rel_a_field, &DEM_FIELD_DESC, "g", "dem_field", "dem_field_desc", "DEM_FIELD_DESC",
+    C_(field, rel_a_field, 0, "g", "dem_field", "dem_field_desc", "DEM_FIELD_DESC",
         "dem_field_add(w, &d)"),
     C_(gravity, rel_a_later, 0, "", "", "", "", "dem_world_gravity_set(w, $gravity)"),
     C_(cell, rel_a_later, 0, "", "", "dem_cell_desc", "DEM_CELL_DESC", "dem_cell_set(w, &d)"),
