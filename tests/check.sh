@@ -47,6 +47,16 @@ one_file="-DDEM_IMPLEMENTATION $user"
 strict="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Werror"
 float="-DDEM_REAL=float"
 
+# each switch alone, and all of them; `make check` also runs the tests that each can
+for switch in NO_FILES NO_REPLAY NO_REPORTS NO_TRIALS NO_SLABS NO_IMPULSES CORE; do
+    for cc in "gcc -std=c99" "clang -std=c99" "g++ -std=c++11 -x c++"; do
+        found ${cc%% *} || continue
+        [ "$1" = short ] && [ $switch != CORE ] && [ "$cc" != "gcc -std=c99" ] && continue
+        try "DEM_$switch, ${cc%% *}: strict" "$cc -I. $strict -DDEM_$switch -fsyntax-only dem.c"
+    done
+done
+[ "$1" = short ] || { turn=1; try "tests with switches" "sh tests/switches.sh"; turn=2; }
+
 # dem.h after other headers, whose macros must not be names in it: all of C99, those of POSIX, and two that are
 # full of macros. capitals: every capital letter is a macro of the program
 after() {                                      # GROUP HEADER...: those that are here, then dem.h
