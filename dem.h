@@ -70,10 +70,12 @@
        >>on-walls          contacts of spheres and ellipsoids with walls
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
-       >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
+       >>polyhedra-sieves  contacts of polyhedra with sieves
        >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
        >>flush             fixed polyhedra that touch: one surface
-       >>meets             contact geometry of two bodies, and of a body on a wall, by shape
+       >>meets             contact geometry of two spheres or ellipsoids
+       >>meets-polyhedra   contact geometry of polyhedra with other bodies
+       >>meet-tables       functions by shape and by wall; contact geometry on a wall
        >>continued         which contact of the step before a persistent contact continues
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
@@ -534,6 +536,7 @@
        DEM_NO_TRIALS        dem_trials_run, and the costs of effects
        DEM_NO_SLABS         one scene on several threads or processes as slabs
        DEM_NO_IMPULSES      rigid grains: dem_world_create refuses DEM_RESPONSE_IMPULSES; no joints
+       DEM_NO_POLYHEDRA     polyhedra and polygons
        DEM_CORE             all of these
 
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
@@ -691,6 +694,8 @@ typedef DEM_REAL dem_real;
 #define DEM_NO_SLABS
 #undef DEM_NO_IMPULSES
 #define DEM_NO_IMPULSES
+#undef DEM_NO_POLYHEDRA
+#define DEM_NO_POLYHEDRA
 #endif
 #if defined(DEM_NO_FILES) && !defined(DEM_NO_REPLAY)
 #define DEM_NO_REPLAY                   /* writes a file */
@@ -2225,6 +2230,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc
    spread; counters count it once. With impulses it has up to four points, each with its own gap
    (>>gaps); counters count the points with a repulsive force. */
 enum { DEM_POLYHEDRON_FACES = 100 };
+#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
 /* Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if
    the mesh lies deeper inside its hull than dent (m, >= 0; 0 accepts convex meshes only, up to
@@ -2232,6 +2238,7 @@ DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const de
    vertices to dem_shape_polyhedron_add. Not in planar worlds. */
 struct dem_mesh;
 DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *mesh, dem_real dent);
+#endif
 
 /* Adds a union: count (1 to 1000) polyhedra, polygons or ellipsoids as one rigid body, in a frame
    of your choice. Each piece is a shape of this world, with a position (count x 3, m) and an
@@ -2239,12 +2246,14 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *me
    sums over the pieces: overlapping pieces count twice. Clusters and unions cannot be pieces. */
 DEM_API dem_shape dem_shape_union_add(dem_world *world, int count, const dem_shape *shapes,
                                       const dem_real *positions, const dem_real *orientations);
+#if !defined(DEM_NO_POLYHEDRA)
 /* Adds a polygon in a planar world: corners in sequence, clockwise or anticlockwise (count x 2, m,
    3 to 98). A concave polygon becomes the union of convex pieces, which are shapes too. The mass is
    density x area x desc.thickness. For contacts the polygon is a prism of thickness 4/3
    sqrt(area/pi), which gives it the volume of the sphere with the same area of cross-section. It is
    an error if sides cross. */
 DEM_API dem_shape dem_shape_polygon_add(dem_world *world, int count, const dem_real *points);
+#endif
 
 /* Properties of a shape. */
 typedef struct dem_shape_info {
@@ -3932,7 +3941,8 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #undef Y
 /* With a switch, some private functions have no user. */
 #if defined(DEM_NO_FILES) || defined(DEM_NO_REPORTS) || defined(DEM_NO_SLABS) || \
-    defined(DEM_NO_REPLAY) || defined(DEM_NO_IMPULSES) || defined(DEM_NO_TRIALS)
+    defined(DEM_NO_REPLAY) || defined(DEM_NO_IMPULSES) || defined(DEM_NO_TRIALS) || \
+    defined(DEM_NO_POLYHEDRA)
 #define DEMI_LESS
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -4725,6 +4735,28 @@ enum { DEMI_SIEVE_MOST = 25 };                  /* contact points of a grain wit
 enum { DEMI_FLATS = 6 };        /* contacts that a polyhedron may have with one surface */
 enum { DEMI_FLATS_WALLS = 24 };                 /* parts of these, if it is of several walls */
 enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface of revolution */
+/* Cosine of 1.8 degrees: faces this nearly perpendicular to a normal are in face contact. */
+#define DEMI_FLUSH 0.9995
+/* c->from of a contact that has taken over the history of another one, c->memory. */
+enum { DEMI_TAKEN_OVER = -2 };
+/* Up to four contact points: x midway between both surfaces, gaps along the normal. */
+typedef struct demi_spots {
+    int count;
+    demi_d3 normal, x[4];          /* unit, from a to b; m */
+    double gap[4];                 /* m; negative: overlap */
+} demi_spots;
+#ifdef DEM_NO_POLYHEDRA            /* nothing adds one, so no table is asked */
+#define demi_solid_round_touch 0
+#define demi_polyhedra_touch 0
+#define demi_flat_polyhedron 0
+#define demi_round_polyhedron 0
+#define demi_grain_polyhedron 0
+#define demi_sieve_polyhedron 0
+#define demi_flush_make(w) 1
+#define demi_flush_share(to, from) 1
+#define demi_flush_within(w, c, p, q, gap, spots) 0
+#define demi_flush_follow(w, c, p, q) (void)0
+#endif
 #define DEMI_SHAPES(X) \
     X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
     X(ELLIPSOID, ellipsoid, "ellipsoid", demi_ellipsoids_gap, \
@@ -8956,12 +8988,14 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     shape->centre = demi_add(shape->centre, middle);
     return 1;
 }
+#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
     demi_shape shape;
     if (demi_null(w, __func__, w, "world") || demi_shape_planar(w, __func__)) return demi_no_shape;
     if (!demi_polyhedron_of(w, __func__, count, points, &shape)) return demi_no_shape;
     return demi_shape_adopt(w, __func__, &shape);
 }
+#endif
 /* Returns the depth of a point, in the frame the shape was given in, below its faces, m. */
 static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
     const demi_d3 x = demi_d3_of(dem_quat_unrotate(s->frame, demi_sub(at, s->centre)));
@@ -9023,6 +9057,7 @@ static int demi_mesh_hull(dem_world *w, const char *call, const dem_mesh *mesh, 
     demi_free(w, taken);
     return made;
 }
+#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_real dent) {
     demi_shape shape;
     dem_vec3 place = demi_v(0, 0, 0);
@@ -9059,6 +9094,7 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
     }
     return demi_shape_adopt(w, __func__, &shape);
 }
+#endif
 
 static size_t demi_shape_hull_reals(const demi_shape *s) {
     return 4*(size_t)s->faces + 3*(size_t)s->corners;
@@ -9412,6 +9448,7 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     }
     return fabs(area);
 }
+#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real *points) {
     demi_cut_out piece[DEMI_POLYGON];
     double x[2*DEMI_POLYGON], area, high;
@@ -9457,6 +9494,7 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real 
     while (w->shape_count > first) demi_shape_free(w, &w->shapes[--w->shape_count]);
     return demi_no_shape;
 }
+#endif
 
 /* ---------------------------------------------------------------------------------------------
    >>filed
@@ -19171,6 +19209,8 @@ static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *s
 /* The force loop of spheres while events are recorded. */
 static void demi_pairs_noted(dem_world *w, int d) { demi_pairs_with(w, d, demi_tile_note); }
 
+#ifndef DEM_NO_POLYHEDRA
+
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra
    Common volume of two convex polyhedra, or of one and a rigid surface, and the contact force that
@@ -20090,12 +20130,6 @@ static double demi_solids_gap(const demi_solid *a, const demi_solid *b, demi_d3 
 
 /* --- contact manifold --- */
 
-/* Up to four contact points: x midway between both surfaces, gaps along the normal. */
-typedef struct demi_spots {
-    int count;
-    demi_d3 normal, x[4];          /* unit, from a to b; m */
-    double gap[4];                 /* m; negative: overlap */
-} demi_spots;
 /* How much a point that is `off` (m) aside of others matters, for demi_spots_pick. Points that
    touch (gap of at most `touch`, m) come first, the farthest of them before others. Of the rest,
    those come first that the smallest rotation brings into contact. far: largest distance, m. */
@@ -20166,8 +20200,6 @@ static int demi_solid_facing(const demi_solid *s, demi_d3 n, double *along) {
     }
     return best;
 }
-/* Cosine of 1.8 degrees: faces this nearly perpendicular to a normal are in face contact. */
-#define DEMI_FLUSH 0.9995
 /* Clips the face of b opposite to face f of a to the outline of f. Returns the number of points;
    gap: their gaps from the plane of f. */
 static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi_d3 *x,
@@ -20223,6 +20255,8 @@ static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet
     out->normal = n;
     return all < range ? demi_solids_manifold(a, b, facet, range, all, n, s, out) : 0;
 }
+
+#endif /* DEM_NO_POLYHEDRA */
 
 /* ---------------------------------------------------------------------------------------------
    >>on-walls
@@ -20806,6 +20840,8 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
         more->axis = demi_rotate(R, b.axis);
     }
 }
+
+#ifndef DEM_NO_POLYHEDRA
 
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra-walls
@@ -22491,9 +22527,7 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
     return count;
 }
 
-/* The functions by kind of wall and kind of part. */
-#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) DEMI_LIST TOUCH,
-static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
+#endif /* DEM_NO_POLYHEDRA */
 
 /* ---------------------------------------------------------------------------------------------
    >>ellipsoids
@@ -22711,6 +22745,8 @@ static double demi_eggs_chord(demi_egg_tile *t, int k) {
     return demi_meet_chord(&m, demi_egg_matrix(t, 0, k));
 }
 
+#ifndef DEM_NO_POLYHEDRA
+
 /* ---------------------------------------------------------------------------------------------
    >>flush
    Fixed polyhedra that touch, such as blocks side by side, act on other bodies as one body with
@@ -22734,8 +22770,6 @@ static double demi_eggs_chord(demi_egg_tile *t, int k) {
 
 /* A piece of a fixed body; part.shape is not valid, shape is its index. */
 typedef struct demi_flush_piece { demi_part part; int32_t shape; } demi_flush_piece;
-/* c->from of a contact that has taken over the history of another one, c->memory. */
-enum { DEMI_TAKEN_OVER = -2 };
 /* True if body i is fixed and consists of polyhedra. */
 static int demi_flush_is(const dem_world *w, int i) {
     const demi_shape *shape = demi_shape_of(w, i);
@@ -23273,13 +23307,12 @@ static int demi_flush_within(const dem_world *w, const demi_kept *c, const demi_
         demi_flush_covers(w, o.a, o.part, o.row, o.piece, o.way);
 }
 
+#endif /* DEM_NO_POLYHEDRA */
+
 /* ---------------------------------------------------------------------------------------------
    >>meets
    Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
-   Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85], two
-   polyhedra their common volume (>>polyhedra) or their gaps (>>gaps), and unlike parts the nearest
-   point. A table selects the function by the kinds of the parts. At the end of this part, functions
-   write the overlap, arm and radius of contacts with walls, whose points >>touch has found. Owns
+   Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85]. Owns
    nothing, and writes only the contacts that it is given.
    --------------------------------------------------------------------------------------------- */
 
@@ -23364,6 +23397,15 @@ static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real le
         demi_kept_odd(c)->inset = 1 - left;
     }
 }
+
+#ifndef DEM_NO_POLYHEDRA
+
+/* ---------------------------------------------------------------------------------------------
+   >>meets-polyhedra
+   Narrow phase of a polyhedron and another body: a sphere or an ellipsoid at the nearest point, two
+   polyhedra by their common volume (>>polyhedra) or their gaps (>>gaps). Owns nothing, and writes
+   only the contacts that it is given.
+   --------------------------------------------------------------------------------------------- */
 /* A sphere and a polyhedron, at the nearest point; R* is the sphere's radius, as on a plane. */
 static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, demi_kept *c) {
@@ -23525,6 +23567,18 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
+
+#endif /* DEM_NO_POLYHEDRA */
+
+/* ---------------------------------------------------------------------------------------------
+   >>meet-tables
+   Tables that select a function by the kinds of two parts, or of a part and a wall. After them,
+   functions that write the overlap, arm and radius of contacts with walls, whose points >>touch has
+   found. Owns nothing, and writes only the contacts that it is given.
+   --------------------------------------------------------------------------------------------- */
+/* The functions by kind of wall and kind of part. */
+#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) DEMI_LIST TOUCH,
+static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
 /* The function for two kinds of parts; the table is indexed by the higher kind first. */
 #define DEMI_SHAPE_MEET(KIND, NAME, WORD, GAP, TOUCH) DEMI_LIST TOUCH,
 static const demi_meet_fn demi_meets[][DEMI_SHAPE_KINDS] = {DEMI_SHAPES(DEMI_SHAPE_MEET)};

@@ -70,10 +70,12 @@
        >>on-walls          contacts of spheres and ellipsoids with walls
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
-       >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
+       >>polyhedra-sieves  contacts of polyhedra with sieves
        >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
        >>flush             fixed polyhedra that touch: one surface
-       >>meets             contact geometry of two bodies, and of a body on a wall, by shape
+       >>meets             contact geometry of two spheres or ellipsoids
+       >>meets-polyhedra   contact geometry of polyhedra with other bodies
+       >>meet-tables       functions by shape and by wall; contact geometry on a wall
        >>continued         which contact of the step before a persistent contact continues
        >>kept              contacts with walls and of other shapes: persistent contacts
        >>kept-respond      persistent contacts to forces and torques on both bodies
@@ -206,7 +208,8 @@
 #undef Y
 /* With a switch, some private functions have no user. */
 #if defined(DEM_NO_FILES) || defined(DEM_NO_REPORTS) || defined(DEM_NO_SLABS) || \
-    defined(DEM_NO_REPLAY) || defined(DEM_NO_IMPULSES) || defined(DEM_NO_TRIALS)
+    defined(DEM_NO_REPLAY) || defined(DEM_NO_IMPULSES) || defined(DEM_NO_TRIALS) || \
+    defined(DEM_NO_POLYHEDRA)
 #define DEMI_LESS
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -249,15 +252,25 @@
 #include "contact/respond.h"
 #include "contact/pairs.h"
 #include "contact/noted.h"
+#ifndef DEM_NO_POLYHEDRA
 #include "contact/polyhedra.h"
 #include "contact/gaps.h"
+#endif /* DEM_NO_POLYHEDRA */
 #include "contact/on-walls.h"
+#ifndef DEM_NO_POLYHEDRA
 #include "contact/polyhedra-walls.h"
 #include "contact/polyhedra-round.h"
 #include "contact/polyhedra-sieves.h"
+#endif /* DEM_NO_POLYHEDRA */
 #include "contact/ellipsoids.h"
+#ifndef DEM_NO_POLYHEDRA
 #include "contact/flush.h"
+#endif /* DEM_NO_POLYHEDRA */
 #include "contact/meets.h"
+#ifndef DEM_NO_POLYHEDRA
+#include "contact/meets-polyhedra.h"
+#endif /* DEM_NO_POLYHEDRA */
+#include "contact/meet-tables.h"
 #include "contact/continued.h"
 #include "contact/kept.h"
 #include "contact/kept-respond.h"
@@ -287,7 +300,6 @@
 #include "run/step.h"
 #include "run/runs.h"
 #include "run/world.h"
-
 /* ================================================================================================
    >>services - volume II: what reads a world, writes it to files or shares it out. No part above
    this line calls one below.

@@ -48,7 +48,7 @@ strict="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdoubl
 float="-DDEM_REAL=float"
 
 # each switch alone, and all of them; `make check` also runs the tests that each can
-for switch in NO_FILES NO_REPLAY NO_REPORTS NO_TRIALS NO_SLABS NO_IMPULSES CORE; do
+for switch in NO_FILES NO_REPLAY NO_REPORTS NO_TRIALS NO_SLABS NO_IMPULSES NO_POLYHEDRA CORE; do
     for cc in "gcc -std=c99" "clang -std=c99" "g++ -std=c++11 -x c++"; do
         found ${cc%% *} || continue
         [ "$1" = short ] && [ $switch != CORE ] && [ "$cc" != "gcc -std=c99" ] && continue

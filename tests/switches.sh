@@ -2,7 +2,7 @@
 # its own. The test programs take turns: each runs with one switch, the next program with the next one. A program that
 # names a private function, or a public one that is switched off, cannot be compiled and is left out; its turn goes to
 # the next switch. The last line is "N passed, N failed"; the exit code is 1 when anything failed.
-switches=${*:-CORE NO_FILES NO_REPLAY NO_REPORTS NO_TRIALS NO_SLABS NO_IMPULSES}
+switches=${*:-CORE NO_FILES NO_REPLAY NO_REPORTS NO_TRIALS NO_SLABS NO_IMPULSES NO_POLYHEDRA}
 CC=${CC:-cc}; dir=build/switches
 flags="-std=c99 -O1 -ffp-contract=off -DDEM_NO_CLONES -I."
 mkdir -p $dir build/tmp; : > $dir/turns.txt

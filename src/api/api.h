@@ -56,6 +56,8 @@ typedef DEM_REAL dem_real;
 #define DEM_NO_SLABS
 #undef DEM_NO_IMPULSES
 #define DEM_NO_IMPULSES
+#undef DEM_NO_POLYHEDRA
+#define DEM_NO_POLYHEDRA
 #endif
 #if defined(DEM_NO_FILES) && !defined(DEM_NO_REPLAY)
 #define DEM_NO_REPLAY                   /* writes a file */

@@ -394,6 +394,7 @@
        DEM_NO_TRIALS        dem_trials_run, and the costs of effects
        DEM_NO_SLABS         one scene on several threads or processes as slabs
        DEM_NO_IMPULSES      rigid grains: dem_world_create refuses DEM_RESPONSE_IMPULSES; no joints
+       DEM_NO_POLYHEDRA     polyhedra and polygons
        DEM_CORE             all of these
 
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape

@@ -569,6 +569,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc
    spread; counters count it once. With impulses it has up to four points, each with its own gap
    (>>gaps); counters count the points with a repulsive force. */
 enum { DEM_POLYHEDRON_FACES = 100 };
+#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
 /* Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if
    the mesh lies deeper inside its hull than dent (m, >= 0; 0 accepts convex meshes only, up to
@@ -576,6 +577,7 @@ DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const de
    vertices to dem_shape_polyhedron_add. Not in planar worlds. */
 struct dem_mesh;
 DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *mesh, dem_real dent);
+#endif
 
 /* Adds a union: count (1 to 1000) polyhedra, polygons or ellipsoids as one rigid body, in a frame
    of your choice. Each piece is a shape of this world, with a position (count x 3, m) and an
@@ -583,12 +585,14 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *me
    sums over the pieces: overlapping pieces count twice. Clusters and unions cannot be pieces. */
 DEM_API dem_shape dem_shape_union_add(dem_world *world, int count, const dem_shape *shapes,
                                       const dem_real *positions, const dem_real *orientations);
+#if !defined(DEM_NO_POLYHEDRA)
 /* Adds a polygon in a planar world: corners in sequence, clockwise or anticlockwise (count x 2, m,
    3 to 98). A concave polygon becomes the union of convex pieces, which are shapes too. The mass is
    density x area x desc.thickness. For contacts the polygon is a prism of thickness 4/3
    sqrt(area/pi), which gives it the volume of the sphere with the same area of cross-section. It is
    an error if sides cross. */
 DEM_API dem_shape dem_shape_polygon_add(dem_world *world, int count, const dem_real *points);
+#endif
 
 /* Properties of a shape. */
 typedef struct dem_shape_info {

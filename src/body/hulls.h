@@ -412,12 +412,14 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     shape->centre = demi_add(shape->centre, middle);
     return 1;
 }
+#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
     demi_shape shape;
     if (demi_null(w, __func__, w, "world") || demi_shape_planar(w, __func__)) return demi_no_shape;
     if (!demi_polyhedron_of(w, __func__, count, points, &shape)) return demi_no_shape;
     return demi_shape_adopt(w, __func__, &shape);
 }
+#endif
 /* Returns the depth of a point, in the frame the shape was given in, below its faces, m. */
 static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
     const demi_d3 x = demi_d3_of(dem_quat_unrotate(s->frame, demi_sub(at, s->centre)));
@@ -479,6 +481,7 @@ static int demi_mesh_hull(dem_world *w, const char *call, const dem_mesh *mesh, 
     demi_free(w, taken);
     return made;
 }
+#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_real dent) {
     demi_shape shape;
     dem_vec3 place = demi_v(0, 0, 0);
@@ -515,6 +518,7 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
     }
     return demi_shape_adopt(w, __func__, &shape);
 }
+#endif
 
 static size_t demi_shape_hull_reals(const demi_shape *s) {
     return 4*(size_t)s->faces + 3*(size_t)s->corners;

@@ -240,6 +240,7 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     }
     return fabs(area);
 }
+#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real *points) {
     demi_cut_out piece[DEMI_POLYGON];
     double x[2*DEMI_POLYGON], area, high;
@@ -285,3 +286,4 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real 
     while (w->shape_count > first) demi_shape_free(w, &w->shapes[--w->shape_count]);
     return demi_no_shape;
 }
+#endif

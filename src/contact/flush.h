@@ -21,8 +21,6 @@
 
 /* A piece of a fixed body; part.shape is not valid, shape is its index. */
 typedef struct demi_flush_piece { demi_part part; int32_t shape; } demi_flush_piece;
-/* c->from of a contact that has taken over the history of another one, c->memory. */
-enum { DEMI_TAKEN_OVER = -2 };
 /* True if body i is fixed and consists of polyhedra. */
 static int demi_flush_is(const dem_world *w, int i) {
     const demi_shape *shape = demi_shape_of(w, i);

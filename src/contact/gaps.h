@@ -341,12 +341,6 @@ static double demi_solids_gap(const demi_solid *a, const demi_solid *b, demi_d3 
 
 /* --- contact manifold --- */
 
-/* Up to four contact points: x midway between both surfaces, gaps along the normal. */
-typedef struct demi_spots {
-    int count;
-    demi_d3 normal, x[4];          /* unit, from a to b; m */
-    double gap[4];                 /* m; negative: overlap */
-} demi_spots;
 /* How much a point that is `off` (m) aside of others matters, for demi_spots_pick. Points that
    touch (gap of at most `touch`, m) come first, the farthest of them before others. Of the rest,
    those come first that the smallest rotation brings into contact. far: largest distance, m. */
@@ -417,8 +411,6 @@ static int demi_solid_facing(const demi_solid *s, demi_d3 n, double *along) {
     }
     return best;
 }
-/* Cosine of 1.8 degrees: faces this nearly perpendicular to a normal are in face contact. */
-#define DEMI_FLUSH 0.9995
 /* Clips the face of b opposite to face f of a to the outline of f. Returns the number of points;
    gap: their gaps from the plane of f. */
 static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, demi_d3 *x,

@@ -363,7 +363,3 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
     }
     return count;
 }
-
-/* The functions by kind of wall and kind of part. */
-#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) DEMI_LIST TOUCH,
-static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};

@@ -335,6 +335,28 @@ enum { DEMI_SIEVE_MOST = 25 };                  /* contact points of a grain wit
 enum { DEMI_FLATS = 6 };        /* contacts that a polyhedron may have with one surface */
 enum { DEMI_FLATS_WALLS = 24 };                 /* parts of these, if it is of several walls */
 enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface of revolution */
+/* Cosine of 1.8 degrees: faces this nearly perpendicular to a normal are in face contact. */
+#define DEMI_FLUSH 0.9995
+/* c->from of a contact that has taken over the history of another one, c->memory. */
+enum { DEMI_TAKEN_OVER = -2 };
+/* Up to four contact points: x midway between both surfaces, gaps along the normal. */
+typedef struct demi_spots {
+    int count;
+    demi_d3 normal, x[4];          /* unit, from a to b; m */
+    double gap[4];                 /* m; negative: overlap */
+} demi_spots;
+#ifdef DEM_NO_POLYHEDRA            /* nothing adds one, so no table is asked */
+#define demi_solid_round_touch 0
+#define demi_polyhedra_touch 0
+#define demi_flat_polyhedron 0
+#define demi_round_polyhedron 0
+#define demi_grain_polyhedron 0
+#define demi_sieve_polyhedron 0
+#define demi_flush_make(w) 1
+#define demi_flush_share(to, from) 1
+#define demi_flush_within(w, c, p, q, gap, spots) 0
+#define demi_flush_follow(w, c, p, q) (void)0
+#endif
 #define DEMI_SHAPES(X) \
     X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
     X(ELLIPSOID, ellipsoid, "ellipsoid", demi_ellipsoids_gap, \
