@@ -104,6 +104,7 @@
        >>stress            cells led to a strain or stress; stress and fabric of the whole
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>events            contacts from beginning to end; spectra of impacts; wear
+       >>features          what optional features add to a step
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
        >>world             creating and destroying a world
@@ -297,6 +298,7 @@
 #include "run/stress.h"
 #include "run/fields.h"
 #include "run/events.h"
+#include "run/features.h"
 #include "run/step.h"
 #include "run/runs.h"
 #include "run/world.h"

@@ -116,3 +116,4 @@ static dem_result demi_radii_grow(dem_world *h) {
     if (grown > 2) demi_dt_outdated(h);
     return DEM_OK;
 }
+static int demi_growth_on(const dem_world *h) { return h->desc.growth != 0; }

@@ -392,3 +392,4 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
     *state = r->state;
     return DEM_OK;
 }
+static int demi_rails_on(const dem_world *w) { return w->rail_count > 0; }

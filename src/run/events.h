@@ -644,3 +644,9 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     demi_free(w, all);
     return n;
 }
+/* Recording in a step, see >>features. */
+static int demi_events_on(const dem_world *h) { return h->events.n.on; }
+static dem_result demi_events_ready(dem_world *h) {
+    return demi_events_room(h) ? DEM_OK : demi_no_memory(h, "dem_world_step");
+}
+static dem_result demi_events_taken(dem_world *h) { demi_events_take(h); return DEM_OK; }

@@ -430,3 +430,7 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     out->coordination = d.grains[c] > 0 ? d.contacts[c]/d.grains[c] : 0;
     return DEM_OK;
 }
+/* Sampling in a step, see >>features. */
+static int demi_fields_on(const dem_world *h) { return demi_member(h, 0)->field_count > 0; }
+static dem_result demi_member_sample(dem_world *w) { demi_fields_sample(w); return DEM_OK; }
+static dem_result demi_fields_ended(dem_world *h) { return demi_all(h, demi_member_sample); }

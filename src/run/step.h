@@ -414,8 +414,7 @@ static dem_result demi_step_move(dem_world *w) {
     w->clock.half_kick = (double)w->clock.dt/2;
     demi_domains_do(w, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
-    demi_rails_move(w);
-    if (w->cell.on) demi_cell_move(w);
+    DEMI_MEMBER_PHASE(w, moved)
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -555,7 +554,7 @@ static dem_result demi_member_forces(dem_world *w) {
    user-defined functions returned impossible numbers, or an overlap has reached the radius. */
 static dem_result demi_member_end(dem_world *w) {
     int d;
-    demi_rails_act(w);
+    DEMI_MEMBER_PHASE(w, acted)
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
@@ -566,7 +565,6 @@ static dem_result demi_member_prime(dem_world *w) {
     demi_prime(w);
     return DEM_OK;
 }
-static dem_result demi_member_sample(dem_world *w) { demi_fields_sample(w); return DEM_OK; }
 /* Run before and after forces are computed without a step. forces_valid = 0 makes contact histories
    stay as they are. */
 static dem_result demi_member_look(dem_world *w) {
@@ -576,7 +574,7 @@ static dem_result demi_member_look(dem_world *w) {
 }
 static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
-    demi_rails_act(w);
+    DEMI_MEMBER_PHASE(w, acted)
     w->stage.forces_valid = 1;
     return DEM_OK;
 }
@@ -676,11 +674,10 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);
     if (result == DEM_OK) result = demi_all(h, demi_member_touch);
     if (result == DEM_OK && demi_member(h, 0)->bodies.orienting) result = demi_agree(h, 0, 0);
-    if (result == DEM_OK && h->events.n.on && !demi_events_room(h))
-        result = demi_no_memory(h, "dem_world_step");
+    DEMI_PHASE(h, result, found)
     if (result == DEM_OK) result = demi_all(h, demi_member_forces);
     if (result == DEM_OK && h->team) result = h->team->give(h, &demi_pushes);
-    if (result == DEM_OK && h->events.n.on) demi_events_take(h);
+    DEMI_PHASE(h, result, answered)
     return result;
 }
 /* Fails after a step with an overlap above desc.overlap_stop. */
@@ -766,10 +763,9 @@ static dem_result demi_member_gain(dem_world *w) {
 }
 /* Performs one step, or the rest of a step that ran out of memory after its move. */
 static dem_result demi_step_once(dem_world *h) {
-    dem_result result;
+    dem_result result = DEM_OK;
     if (!h->stage.moved) {
-        result = demi_servos_lead(h);
-        if (result == DEM_OK && h->cell.on) result = demi_cell_lead(h);
+        DEMI_PHASE(h, result, lead)
         if (result == DEM_OK) result = demi_all(h, demi_member_move);
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;
@@ -835,17 +831,15 @@ static dem_result demi_look(dem_world *w) {
     if (w->look.films_look) w->look.films_look(w);
     return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
 }
-/* Prepares a step: settles the time step, inserts grains of feeds, changes radii, computes the
-   forces of a scene that has changed, checks the time step against the present contacts, and sets
-   half-step velocities. */
+/* Prepares a step: settles the time step, again after each feature that may change bodies, computes
+   the forces of a scene that has changed, checks the time step against the present contacts, and
+   sets half-step velocities. */
 static dem_result demi_step_ready(dem_world *h) {
     dem_result result = demi_dt_settle(h);
-    if (result == DEM_OK && h->feed_count) {
-        result = h->team ? h->team->feed(h) : demi_world_feed(h);
-        if (result == DEM_OK) result = demi_dt_settle(h);   /* there may be new grains */
-    }
-    if (result == DEM_OK && h->desc.growth) {
-        result = demi_radii_grow(h);
+    int k;
+    for (k = 0; k < DEMI_FEATURES && result == DEM_OK; k++) {
+        if (!demi_features[k].ready || !demi_features[k].on(h)) continue;
+        result = demi_features[k].ready(h);
         if (result == DEM_OK) result = demi_dt_settle(h);
     }
     if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed))
@@ -875,8 +869,7 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
         if (result == DEM_OK) {
             result = demi_step_once(h);
             demi_crew_end(h);
-            if (result == DEM_OK && demi_member(h, 0)->field_count)
-                result = demi_all(h, demi_member_sample);
+            DEMI_PHASE(h, result, ended)
         }
         demi_called(h, was);
         if (result == DEM_OK) result = demi_events_tell(h, call);

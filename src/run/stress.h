@@ -239,3 +239,4 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     s->coordination /= DEMI_MAX(w->bodies.count, 1);
     return DEM_OK;
 }
+static int demi_cell_on(const dem_world *h) { return h->cell.on; }

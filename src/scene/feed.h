@@ -570,3 +570,8 @@ DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
     o->state.since = w->clock.time;
     return DEM_OK;
 }
+/* Feeds in a step, see >>features. */
+static int demi_feeds_on(const dem_world *h) { return h->feed_count > 0; }
+static dem_result demi_feeds_ready(dem_world *h) {
+    return h->team ? h->team->feed(h) : demi_world_feed(h);
+}
