@@ -35,3 +35,28 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
     }
 }
 #define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
+/* --- reading a checkpoint: the reader, and the message that a value is impossible --- */
+
+/* A checkpoint being read. */
+typedef struct demi_reader {
+    dem_world *w, *t;              /* the world; its twin */
+    const char *path;
+    demi_stream s;                 /* what is left of the file */
+} demi_reader;
+
+/* Fails with the message that a value is impossible although the checksum is correct. which: the
+   index of its item, or -1. Returns 0. */
+static int demi_lie(const demi_reader *r, const char *what, long long which) {
+    char number[32] = "";
+    if (which >= 0) demi_words(number, sizeof number, " %lld", which + 1);
+    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: invalid %s%s, although the "
+              "checksum is correct; the file was altered, or the run that wrote it had blown up: "
+              "use an older checkpoint", r->path, what, number);
+    return 0;
+}
+/* True if the rest of the file can hold so many items of `size` bytes. */
+static int demi_left(const demi_reader *r, int64_t count, size_t size) {
+    return count >= 0 && (uint64_t)count <= r->s.left/size;
+}
+/* True if x is finite and at least `least`. */
+static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }

@@ -393,3 +393,34 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
     return DEM_OK;
 }
 static int demi_rails_on(const dem_world *w) { return w->rail_count > 0; }
+/* --- rails in a checkpoint, see >>features. They are state, as joints are. --- */
+
+static void demi_rails_visit(dem_world *w, demi_stream *s) {
+    if (w->rail_count) demi_visit(s, w->rails, (size_t)w->rail_count*sizeof(demi_rail));
+}
+static int demi_rails_grow(dem_world *t) {
+    return DEMI_GROW(t, t->rails, (size_t)t->rail_count);
+}
+static int demi_rails_counts(const demi_reader *r) {
+    const dem_world *t = r->t, *w = r->w;
+    if (!demi_left(r, t->rail_count, sizeof(demi_rail)) ||
+        (t->rail_count && !demi_response_is(w, DEMI_LASTING)))
+        return demi_lie(r, "number of rails", -1);
+    return 1;
+}
+/* Checks rails: bodies must be slots, walls must exist, and numbers must be finite. */
+static int demi_rails_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->rail_count; i++) {
+        const demi_rail *a = &r->t->rails[i];
+        if (demi_rows_bad(r->w, demi_rail_fields, &a->state.desc, &k) || a->body.slot < 1 ||
+            a->body.slot > (uint32_t)r->t->bodies.slot_count ||
+            a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
+             demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
+            !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
+            !demi_place(a->turn) || !demi_place(a->at) || !demi_place(a->seen) ||
+            !demi_place(a->on))
+            return demi_lie(r, "rail", i);
+    }
+    return 1;
+}

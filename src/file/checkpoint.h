@@ -7,8 +7,8 @@
    A file consists of
        head      magic, version, size of dem_real, byte order, digest of the layout, sizes, counts
        scene     the fields of desc, materials, pairs, shapes, walls, fields, feeds, outlets
-       state     numbers, domains, bodies, joints, neighbour lists, contacts, walls, fields, feeds,
-                 outlets, outputs
+       state     numbers, domains, bodies, neighbour lists, contacts, walls, features (>>features),
+                 outputs
        checksum  of everything before it
 
    Some values are computed when the candidate list is built: the laws in force, the length of the
@@ -18,7 +18,7 @@
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 26 };
+enum { DEMI_CHECKPOINT_VERSION = 27 };
 
 /* --- the state, visited in the order in which it is checked --- */
 
@@ -153,50 +153,11 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);
     }
 }
-/* Visits the sums of fields and the states of feeds and outlets. */
-static void demi_visit_measured(dem_world *w, demi_stream *s) {
-    int i;
-    for (i = 0; i < w->field_count; i++) {
-        demi_field *f = &w->fields[i];
-        demi_visit(s, &f->samples, sizeof f->samples);
-        demi_visit(s, &f->next, sizeof f->next);
-        demi_visit(s, f->sums, demi_field_reals(f)*sizeof(double));
-    }
-    for (i = 0; i < w->feed_count; i++) {
-        demi_feed *f = demi_feed_at(w, i);
-        demi_visit(s, &f->state, sizeof f->state);
-        demi_visit(s, &f->random, sizeof f->random);
-        demi_visit(s, &f->next, sizeof f->next);
-        demi_visit(s, &f->drawn, sizeof f->drawn);
-        demi_visit(s, &f->again, sizeof f->again);
-    }
-    for (i = 0; i < w->outlet_count; i++)
-        demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
-}
-/* Visits joints. They are state and not scene, because they appear and disappear with bodies. */
-static void demi_visit_joints(dem_world *w, demi_stream *s) {
-    if (w->joint_count)
-        demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
-}
-/* Visits rails, which are state for the same reason. */
-static void demi_visit_rails(dem_world *w, demi_stream *s) {
-    if (w->rail_count) demi_visit(s, w->rails, (size_t)w->rail_count*sizeof(demi_rail));
-}
 /* Visits the records of what outputs have written. */
 static void demi_visit_outputs(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->written_count; i++)
         demi_visit(s, s->from ? &w->written[i] : &w->look.outputs[i].written, sizeof *w->written);
-}
-/* Visits the recording of contacts. */
-static void demi_visit_events(dem_world *w, demi_stream *s) {
-    demi_events *e = &w->events;
-    demi_visit(s, e->open, (size_t)e->n.open*sizeof *e->open);
-    demi_visit(s, e->sums, (size_t)e->n.open*sizeof *e->sums);
-    demi_visit(s, e->pending, (size_t)e->n.pending*sizeof *e->pending);
-    demi_visit(s, e->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
-    demi_visit(s, e->walls, (size_t)e->n.walls*sizeof *e->walls);
-    demi_visit(s, e->facets, (size_t)e->n.facets*sizeof *e->facets);
 }
 /* Visits the whole state. demi_twin_read reads it in the same order. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
@@ -208,14 +169,11 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     }
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
-    demi_visit_joints(w, s);
-    demi_visit_rails(w, s);
     demi_visit_lists(w, s);
     demi_visit_contacts(w, s);
     demi_visit_walls(w, s);
-    demi_visit_measured(w, s);
+    DEMI_ALL_FEATURES(visit, (w, s))
     demi_visit_outputs(w, s);
-    demi_visit_events(w, s);
 }
 
 /* --- writing --- */

@@ -91,30 +91,6 @@ static void demi_twin_adopt(dem_world *w, dem_world *t) {
 /* --- reading: are the values possible? Each of these functions checks one part of the twin, right
        after it was read, and returns 0 with an error message if a value is not possible --- */
 
-/* A checkpoint being read. */
-typedef struct demi_reader {
-    dem_world *w, *t;              /* the world; its twin */
-    const char *path;
-    demi_stream s;                 /* what is left of the file */
-} demi_reader;
-
-/* Fails with the message that a value is impossible although the checksum is correct. which: the
-   index of its item, or -1. Returns 0. */
-static int demi_lie(const demi_reader *r, const char *what, long long which) {
-    char number[32] = "";
-    if (which >= 0) demi_words(number, sizeof number, " %lld", which + 1);
-    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: invalid %s%s, although the "
-              "checksum is correct; the file was altered, or the run that wrote it had blown up: "
-              "use an older checkpoint", r->path, what, number);
-    return 0;
-}
-/* True if the rest of the file can hold so many items of `size` bytes. */
-static int demi_left(const demi_reader *r, int64_t count, size_t size) {
-    return count >= 0 && (uint64_t)count <= r->s.left/size;
-}
-/* True if x is finite and at least `least`. */
-static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }
-
 /* Checks the numbers that are not in arrays. Counts come first: they determine what is allocated
    and read next. */
 static int demi_numbers_check(const demi_reader *r) {
@@ -138,22 +114,9 @@ static int demi_numbers_check(const demi_reader *r) {
     if (!demi_left(r, t->joint_count, sizeof(demi_joint)) ||
         (t->joint_count && !demi_response_is(w, DEMI_JOINTED)))
         return demi_lie(r, "number of joints", -1);
-    if (!demi_left(r, t->rail_count, sizeof(demi_rail)) ||
-        (t->rail_count && !demi_response_is(w, DEMI_LASTING)))
-        return demi_lie(r, "number of rails", -1);
+    if (!demi_features_counts(r)) return 0;
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
-    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open,
-                                             sizeof(demi_ongoing) + sizeof(demi_sums)) ||
-        !demi_left(r, t->events.n.pending, sizeof(dem_event)) ||
-        !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
-        !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||
-        !demi_left(r, t->events.n.facets, sizeof(double)) ||
-        (!t->events.n.on && (t->events.n.open || t->events.n.pending || t->events.n.pairs ||
-                             t->events.n.walls || t->events.n.facets)) ||
-        t->events.n.open > INT_MAX/4 || t->events.n.walls > t->wall_count ||
-        !demi_finite_double(t->events.n.since) || (t->events.n.on && !w->desc.ledger))
-        return demi_lie(r, "number of contact events", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
@@ -418,9 +381,8 @@ static int demi_walls_check(const demi_reader *r) {
     }
     return 1;
 }
-/* Checks ages, averages, fields and feeds. A feed with limits cannot have fed more grains than its
-   desc allows. */
-static int demi_measured_check(const demi_reader *r) {
+/* Checks ages and averages. */
+static int demi_ages_check(const demi_reader *r) {
     const demi_bodies *b = &r->t->bodies;
     int i, k;
     for (i = 0; i < b->count; i++) {
@@ -429,61 +391,7 @@ static int demi_measured_check(const demi_reader *r) {
         if (!demi_finite_double(sum) || (b->averaged && !(b->means[DEMI_MEANS*i] >= 0 &&
             b->means[DEMI_MEANS*i] < 9e15))) return demi_lie(r, "age or averages of body", i);
     }
-    for (i = 0; i < r->t->field_count; i++)
-        if (!demi_finite_double(r->t->fields[i].next))
-            return demi_lie(r, "next sampling time of field", i);
-    for (i = 0; i < r->t->feed_count; i++) {
-        const demi_feed *f = demi_feed_at(r->t, i);
-        if (f->next < -1 || f->next >= f->desc.class_count || !demi_sane(f->state.mass, 0))
-            return demi_lie(r, "state of feed", i);
-        for (k = 0; k < f->desc.class_count; k++)
-            if (f->desc.limited && f->state.fed[k] > f->limit[k])
-                return demi_lie(r, "state of feed", i);
-    }
     return 1;
-}
-
-/* Checks rails: bodies must be slots, walls must exist, and numbers must be finite. */
-static int demi_rails_check(const demi_reader *r) {
-    int i, k;
-    for (i = 0; i < r->t->rail_count; i++) {
-        const demi_rail *a = &r->t->rails[i];
-        if (demi_rows_bad(r->w, demi_rail_fields, &a->state.desc, &k) || a->body.slot < 1 ||
-            a->body.slot > (uint32_t)r->t->bodies.slot_count ||
-            a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
-             demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
-            !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
-            !demi_place(a->turn) || !demi_place(a->at) || !demi_place(a->seen) ||
-            !demi_place(a->on))
-            return demi_lie(r, "rail", i);
-    }
-    return 1;
-}
-/* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
-   id of a body that no longer exists names nothing. */
-static int demi_joints_check(const demi_reader *r) {
-#ifdef DEM_NO_IMPULSES
-    return !r->t->joint_count || demi_lie(r, "joint", 0);
-#else
-    int i, k;
-    for (i = 0; i < r->t->joint_count; i++) {
-        const demi_joint *j = &r->t->joints[i];
-        const dem_joint_state *o = &j->state;
-        if (demi_rows_bad(r->w, demi_joint_fields, &j->desc, &k) || !r->t->bodies.orienting ||
-            (j->desc.motor != DEM_MOTOR_NONE && demi_joint_rows(j->desc.kind) != 5) ||
-            j->desc.wall.id < 0 || (j->desc.wall.id &&
-             demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
-            j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
-            !demi_finite_double(j->bank) || !demi_finite_double(j->held) ||
-            !demi_finite(j->left) || !demi_finite(j->apart) ||
-            !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
-            !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
-            !demi_finite(o->power) || !demi_finite(o->motor_torque) ||
-            !demi_finite_double(o->turned) || !demi_finite_double(o->work))
-            return demi_lie(r, "joint", i);
-    }
-    return 1;
-#endif
 }
 
 /* Checks the records of outputs: numbers must be within their range and times finite. */
@@ -494,53 +402,6 @@ static int demi_outputs_check(const demi_reader *r) {
         if (o->next < DEMI_OUTPUT_UNKNOWN || (double)o->next > DEMI_OUTPUT_MOST ||
             !demi_finite_double(o->last)) return demi_lie(r, "state of output", i);
     }
-    return 1;
-}
-
-/* True if the ids of an event are possible and its numbers finite. */
-static int demi_event_sane(const dem_world *t, const dem_event *e) {
-    const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
-        e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
-    return demi_finite_double(sum) && demi_finite3(e->point) && demi_finite3(e->normal) &&
-        e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
-        (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
-        (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
-        e->material_a.id >= 1 && e->material_a.id <= t->material_count &&
-        e->material_b.id >= 1 && e->material_b.id <= t->material_count;
-}
-/* Checks the recording of contacts: ids, materials and numbers of facets must be possible. */
-static int demi_events_check(const demi_reader *r) {
-    const dem_world *t = r->t;
-    const demi_events *e = &t->events;
-    double sum;
-    int i, k;
-    for (i = 0; i < e->n.open; i++) {
-        const demi_ongoing *o = &e->open[i];
-        const demi_sums *s = &e->sums[i];
-        sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
-            s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
-        if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
-            (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
-            return demi_lie(r, "contact event", i);
-    }
-    for (i = 0; i < e->n.pending; i++)
-        if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
-    for (i = 0; i < e->n.pairs; i++) {
-        const demi_impacts *p = &e->pairs[i];
-        sum = p->ended + p->lost[0] + p->lost[1] + p->lost[2] + p->lost[3];
-        for (k = 0; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k] + p->energy[k];
-        if (p->a < 0 || p->b < p->a || p->b >= t->material_count || !demi_finite_double(sum))
-            return demi_lie(r, "spectrum", i);
-    }
-    for (i = 0, sum = 0; i < e->n.facets; i++) sum += e->facets[i];
-    if (!demi_finite_double(sum)) return demi_lie(r, "wear of facets", -1);
-    for (i = 0; i < e->n.walls; i++)
-        if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
-            e->walls[i].first < 0 || e->walls[i].count < 0 ||
-            e->walls[i].count > e->n.facets - e->walls[i].first ||
-            (e->walls[i].id == t->walls[i].id && t->walls[i].kind != DEMI_WALL_NONE &&
-             e->walls[i].count && e->walls[i].count != t->walls[i].element_count))
-            return demi_lie(r, "wear of wall", i);
     return 1;
 }
 
@@ -656,25 +517,19 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!demi_domains_check(r)) return DEM_ERROR_FORMAT;
     *seen = (unsigned char *)demi_alloc(t, (size_t)t->bodies.slot_count + 1, 1);
     if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
-        !DEMI_GROW(t, t->joints, (size_t)t->joint_count) ||
-        !DEMI_GROW(t, t->rails, (size_t)t->rail_count) ||
-        !DEMI_GROW(t, t->written, (size_t)t->written_count) || !demi_events_reserve(t))
+        !demi_features_room(t) || !DEMI_GROW(t, t->written, (size_t)t->written_count))
         return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
-    demi_visit_joints(t, s);
-    demi_visit_rails(t, s);
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
     demi_visit_lists(t, s);
     demi_visit_contacts(t, s);
     demi_visit_walls(t, s);
-    demi_visit_measured(t, s);
+    DEMI_ALL_FEATURES(visit, (t, s))
     demi_visit_outputs(t, s);
-    demi_visit_events(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
-    if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
-        !demi_joints_check(r) || !demi_rails_check(r) || !demi_outputs_check(r) ||
-        !demi_events_check(r)) return DEM_ERROR_FORMAT;
-    demi_events_index(t);
+    if (s->cut || s->left || !demi_walls_check(r) || !demi_ages_check(r) ||
+        !demi_features_values(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+    DEMI_ALL_FEATURES(resumed, (t))
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
     if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))
         return DEM_ERROR_MEMORY;

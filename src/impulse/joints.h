@@ -200,3 +200,34 @@ DEM_API dem_result dem_joint_remove(dem_world *w, dem_joint joint) {
     demi_scene_changed(w);
     return DEM_OK;
 }
+/* --- joints in a checkpoint, see >>features. They are state and not scene, because they appear and
+       disappear with bodies. --- */
+
+static void demi_joints_visit(dem_world *w, demi_stream *s) {
+    if (w->joint_count) demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
+}
+static int demi_joints_grow(dem_world *t) {
+    return DEMI_GROW(t, t->joints, (size_t)t->joint_count);
+}
+/* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
+   id of a body that no longer exists names nothing. */
+static int demi_joints_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->joint_count; i++) {
+        const demi_joint *j = &r->t->joints[i];
+        const dem_joint_state *o = &j->state;
+        if (demi_rows_bad(r->w, demi_joint_fields, &j->desc, &k) || !r->t->bodies.orienting ||
+            (j->desc.motor != DEM_MOTOR_NONE && demi_joint_rows(j->desc.kind) != 5) ||
+            j->desc.wall.id < 0 || (j->desc.wall.id &&
+             demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
+            j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
+            !demi_finite_double(j->bank) || !demi_finite_double(j->held) ||
+            !demi_finite(j->left) || !demi_finite(j->apart) ||
+            !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
+            !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
+            !demi_finite(o->power) || !demi_finite(o->motor_torque) ||
+            !demi_finite_double(o->turned) || !demi_finite_double(o->work))
+            return demi_lie(r, "joint", i);
+    }
+    return 1;
+}

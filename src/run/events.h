@@ -650,3 +650,75 @@ static dem_result demi_events_ready(dem_world *h) {
     return demi_events_room(h) ? DEM_OK : demi_no_memory(h, "dem_world_step");
 }
 static dem_result demi_events_taken(dem_world *h) { demi_events_take(h); return DEM_OK; }
+/* --- the recording in a checkpoint, see >>features --- */
+
+static void demi_events_visit(dem_world *w, demi_stream *s) {
+    demi_events *e = &w->events;
+    demi_visit(s, e->open, (size_t)e->n.open*sizeof *e->open);
+    demi_visit(s, e->sums, (size_t)e->n.open*sizeof *e->sums);
+    demi_visit(s, e->pending, (size_t)e->n.pending*sizeof *e->pending);
+    demi_visit(s, e->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
+    demi_visit(s, e->walls, (size_t)e->n.walls*sizeof *e->walls);
+    demi_visit(s, e->facets, (size_t)e->n.facets*sizeof *e->facets);
+}
+static int demi_events_counts(const demi_reader *r) {
+    const dem_world *t = r->t, *w = r->w;
+    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open,
+                                             sizeof(demi_ongoing) + sizeof(demi_sums)) ||
+        !demi_left(r, t->events.n.pending, sizeof(dem_event)) ||
+        !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
+        !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||
+        !demi_left(r, t->events.n.facets, sizeof(double)) ||
+        (!t->events.n.on && (t->events.n.open || t->events.n.pending || t->events.n.pairs ||
+                             t->events.n.walls || t->events.n.facets)) ||
+        t->events.n.open > INT_MAX/4 || t->events.n.walls > t->wall_count ||
+        !demi_finite_double(t->events.n.since) || (t->events.n.on && !w->desc.ledger))
+        return demi_lie(r, "number of contact events", -1);
+    return 1;
+}
+/* True if the ids of an event are possible and its numbers finite. */
+static int demi_event_sane(const dem_world *t, const dem_event *e) {
+    const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
+        e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
+    return demi_finite_double(sum) && demi_finite3(e->point) && demi_finite3(e->normal) &&
+        e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
+        (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
+        (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
+        e->material_a.id >= 1 && e->material_a.id <= t->material_count &&
+        e->material_b.id >= 1 && e->material_b.id <= t->material_count;
+}
+/* Checks the recording of contacts: ids, materials and numbers of facets must be possible. */
+static int demi_events_check(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const demi_events *e = &t->events;
+    double sum;
+    int i, k;
+    for (i = 0; i < e->n.open; i++) {
+        const demi_ongoing *o = &e->open[i];
+        const demi_sums *s = &e->sums[i];
+        sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
+            s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
+        if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
+            (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
+            return demi_lie(r, "contact event", i);
+    }
+    for (i = 0; i < e->n.pending; i++)
+        if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
+    for (i = 0; i < e->n.pairs; i++) {
+        const demi_impacts *p = &e->pairs[i];
+        sum = p->ended + p->lost[0] + p->lost[1] + p->lost[2] + p->lost[3];
+        for (k = 0; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k] + p->energy[k];
+        if (p->a < 0 || p->b < p->a || p->b >= t->material_count || !demi_finite_double(sum))
+            return demi_lie(r, "spectrum", i);
+    }
+    for (i = 0, sum = 0; i < e->n.facets; i++) sum += e->facets[i];
+    if (!demi_finite_double(sum)) return demi_lie(r, "wear of facets", -1);
+    for (i = 0; i < e->n.walls; i++)
+        if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
+            e->walls[i].first < 0 || e->walls[i].count < 0 ||
+            e->walls[i].count > e->n.facets - e->walls[i].first ||
+            (e->walls[i].id == t->walls[i].id && t->walls[i].kind != DEMI_WALL_NONE &&
+             e->walls[i].count && e->walls[i].count != t->walls[i].element_count))
+            return demi_lie(r, "wear of wall", i);
+    return 1;
+}

@@ -1,8 +1,9 @@
 /* ---------------------------------------------------------------------------------------------
    >>features
-   What optional features add to a step: a row of functions for each, null where it adds nothing.
-   A step (>>step) runs its phases over all rows that are on, in this order, and knows no feature by
-   name. h is the head of a team or a single world; w is a member.
+   What optional features add to a step and to a checkpoint: a row of functions for each, null where
+   it adds nothing. A step (>>step) runs its phases over all rows that are on, in this order; the
+   checkpoint runs its own over all rows. Neither knows a feature by name. h is the head of a team
+   or a single world; w is a member.
    --------------------------------------------------------------------------------------------- */
 typedef struct demi_feature {
     const char *name;
@@ -15,16 +16,40 @@ typedef struct demi_feature {
     dem_result (*answered)(dem_world *h);       /* forces are computed */
     void (*acted)(dem_world *w);                /* forces on bodies are summed; may change them */
     dem_result (*ended)(dem_world *h);          /* the step is complete */
+    /* a checkpoint; t: the world that is read */
+    void (*visit)(dem_world *w, demi_stream *s);        /* writes or reads the state */
+    int (*counts)(const demi_reader *r);        /* 0 with a message: an impossible count */
+    int (*room)(dem_world *t);                  /* allocates; 0: memory ran out */
+    int (*values)(const demi_reader *r);        /* 0 with a message: an impossible value */
+    void (*resumed)(dem_world *t);              /* computes what follows from the state */
 } demi_feature;
+#ifdef DEM_NO_IMPULSES
+#define DEMI_JOINTS_FEATURE
+#else
+#define DEMI_JOINTS_FEATURE \
+    {"joints", demi_never_on,  0, 0, 0, 0, 0, 0, 0, \
+     demi_joints_visit, 0, demi_joints_grow, demi_joints_check, 0},
+#endif
+static int demi_never_on(const dem_world *h) { (void)h; return 0; }
 static const demi_feature demi_features[] = {
-    {"feeds",  demi_feeds_on,  demi_feeds_ready, 0, 0, 0, 0, 0, 0},
-    {"growth", demi_growth_on, demi_radii_grow, 0, 0, 0, 0, 0, 0},
-    {"servo",  demi_servos_on, 0, demi_servos_lead, 0, 0, 0, 0, 0},
-    {"rails",  demi_rails_on,  0, 0, demi_rails_move, 0, 0, demi_rails_act, 0},
-    {"cell",   demi_cell_on,   0, demi_cell_lead, demi_cell_move, 0, 0, 0, 0},
-    {"events", demi_events_on, 0, 0, 0, demi_events_ready, demi_events_taken, 0, 0},
-    {"fields", demi_fields_on, 0, 0, 0, 0, 0, 0, demi_fields_ended},
-};
+    DEMI_JOINTS_FEATURE
+    {"feeds",  demi_feeds_on,  demi_feeds_ready, 0, 0, 0, 0, 0, 0,
+     demi_feeds_visit, 0, 0, demi_feeds_check, 0},
+    {"outlets", demi_never_on, 0, 0, 0, 0, 0, 0, 0,
+     demi_outlets_visit, 0, 0, 0, 0},
+    {"growth", demi_growth_on, demi_radii_grow, 0, 0, 0, 0, 0, 0,
+     0, 0, 0, 0, 0},
+    {"servo",  demi_servos_on, 0, demi_servos_lead, 0, 0, 0, 0, 0,
+     0, 0, 0, 0, 0},
+    {"rails",  demi_rails_on,  0, 0, demi_rails_move, 0, 0, demi_rails_act, 0,
+     demi_rails_visit, demi_rails_counts, demi_rails_grow, demi_rails_check, 0},
+    {"cell",   demi_cell_on,   0, demi_cell_lead, demi_cell_move, 0, 0, 0, 0,
+     0, 0, 0, 0, 0},
+    {"events", demi_events_on, 0, 0, 0, demi_events_ready, demi_events_taken, 0, 0,
+     demi_events_visit, demi_events_counts, demi_events_reserve, demi_events_check,
+     demi_events_index},
+    {"fields", demi_fields_on, 0, 0, 0, 0, 0, 0, demi_fields_ended,
+     demi_fields_visit, 0, 0, demi_fields_check, 0}};
 enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
 /* Runs a phase of all rows that are on, until one fails; that of member phases cannot fail. */
 #define DEMI_PHASE(h, result, phase) \
@@ -40,3 +65,30 @@ enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
         for (row = 0; row < DEMI_FEATURES; row++) \
             if (demi_features[row].phase && demi_features[row].on(w)) demi_features[row].phase(w); \
     }
+/* Calls the function of a column of all rows that have one. */
+#define DEMI_ALL_FEATURES(column, arguments) \
+    { \
+        int row; \
+        for (row = 0; row < DEMI_FEATURES; row++) \
+            if (demi_features[row].column) demi_features[row].column arguments; \
+    }
+/* Checks a checkpoint being read: counts, later values. Returns 0 with an error message. */
+static int demi_features_counts(const demi_reader *r) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].counts) ok = demi_features[row].counts(r);
+    return ok;
+}
+static int demi_features_values(const demi_reader *r) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].values) ok = demi_features[row].values(r);
+    return ok;
+}
+/* Allocates for what will be read. Returns 0 if memory ran out. */
+static int demi_features_room(dem_world *t) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].room) ok = demi_features[row].room(t);
+    return ok;
+}

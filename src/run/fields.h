@@ -434,3 +434,20 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
 static int demi_fields_on(const dem_world *h) { return demi_member(h, 0)->field_count > 0; }
 static dem_result demi_member_sample(dem_world *w) { demi_fields_sample(w); return DEM_OK; }
 static dem_result demi_fields_ended(dem_world *h) { return demi_all(h, demi_member_sample); }
+/* Sums of fields in a checkpoint. */
+static void demi_fields_visit(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &w->fields[i];
+        demi_visit(s, &f->samples, sizeof f->samples);
+        demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, f->sums, demi_field_reals(f)*sizeof(double));
+    }
+}
+static int demi_fields_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->field_count; i++)
+        if (!demi_finite_double(r->t->fields[i].next))
+            return demi_lie(r, "next sampling time of field", i);
+    return 1;
+}

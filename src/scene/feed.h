@@ -575,3 +575,33 @@ static int demi_feeds_on(const dem_world *h) { return h->feed_count > 0; }
 static dem_result demi_feeds_ready(dem_world *h) {
     return h->team ? h->team->feed(h) : demi_world_feed(h);
 }
+/* States of feeds and outlets in a checkpoint. A feed with limits cannot have fed more grains than
+   its desc allows. */
+static void demi_feeds_visit(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->feed_count; i++) {
+        demi_feed *f = demi_feed_at(w, i);
+        demi_visit(s, &f->state, sizeof f->state);
+        demi_visit(s, &f->random, sizeof f->random);
+        demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, &f->drawn, sizeof f->drawn);
+        demi_visit(s, &f->again, sizeof f->again);
+    }
+}
+static int demi_feeds_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(r->t, i);
+        if (f->next < -1 || f->next >= f->desc.class_count || !demi_sane(f->state.mass, 0))
+            return demi_lie(r, "state of feed", i);
+        for (k = 0; k < f->desc.class_count; k++)
+            if (f->desc.limited && f->state.fed[k] > f->limit[k])
+                return demi_lie(r, "state of feed", i);
+    }
+    return 1;
+}
+static void demi_outlets_visit(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->outlet_count; i++)
+        demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
+}
