@@ -471,7 +471,7 @@ static int lie_write(dem_world *w, int lie) {
     demi_visit_lists(w, &s);
     demi_visit_contacts(w, &s);
     demi_visit_walls(w, &s);
-    demi_visit_measured(w, &s);
+    DEMI_ALL_FEATURES(visit, (w, &s))
     w->written_count = w->look.output_count;
     demi_visit_outputs(w, &s);
     fwrite(&s.sum, 1, sizeof s.sum, s.file);
