@@ -549,7 +549,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
 DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
     const dem_real *R = v->wall->pose.rotation;
     dem_vec3 x;
-    if (v->wall->kind != DEMI_WALL_PLANE || v->left > 1) return 0;
+    if (v->wall->kind != DEMI_WALL_PLANE || v->left > 1 || v->late) return 0;
     x = demi_sub(demi_add(at, demi_at(v->from)), v->wall->pose.position);
     return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(v->w, r))*DEM_R(1.001);
 }
@@ -563,6 +563,8 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
     const dem_real *balls;
     int k, count;
     v.several = several;
+    v.late = demi_walls_late(w, body);
+    if (v.late) v.gone = DEM_R(1e30);           /* gaps are those half a step ahead */
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
         demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
@@ -654,7 +656,8 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
     int k;
     if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH) || wall->step[0].x > 0) return 0;
     for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
-        const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
+        dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
+        if (demi_walls_late(w, c->a)) at = demi_add(at, demi_wall_carry(w, wall, at));
         if (level && w->wall_id[k] == surface && demi_faceted(wall) &&
             !(DEMI_ABS(demi_dot(demi_at(wall->planes + 4*w->wall_element[k]), n)) >
               DEM_R(DEMI_FLUSH))) continue;
@@ -747,7 +750,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     domain->overflow &= ~16;
     if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
     for (; !(domain->overflow & 16); old = old_end) {
-        while (k < walls && gap[k] > gone) k++; /* not close enough yet */
+        while (k < walls && gap[k] > gone && !demi_walls_late(w, body[k])) k++;     /* not close */
         a = k < walls ? body[k] : INT_MAX;
         if (p < own_end) a = DEMI_MIN(a, near_a[p]);
         if (q < cross_end) a = DEMI_MIN(a, near_a[q]);
@@ -766,7 +769,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
         for (; k < end_k; k = last) {
             last = k + 1;
-            if (gap[k] > gone) continue;
+            if (gap[k] > gone && !demi_walls_late(w, a)) continue;
             while (last < end_k && wall[last] == wall[k]) last++;
             demi_kept_wall(w, d, k, last, several, old, (int)(old_end - old));
         }

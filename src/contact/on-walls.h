@@ -10,6 +10,20 @@
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
     return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
 }
+/* True if a body was just set and is not half a step ahead with the walls (demi_move_midpoint). */
+DEM_INLINE int demi_walls_late(const dem_world *w, int body) {
+    return demi_response_is(w, DEMI_MIDWAY) && !w->bodies.went[body];
+}
+/* Displacement, m, of what is at `at` if it moves half a step ahead with a surface: the contacts of
+   a body that was just set are those of its own time. */
+static DEMI_APART dem_vec3 demi_wall_carry(const dem_world *w, const demi_wall *wall, dem_vec3 at) {
+    const demi_wall *whole = wall->scale || wall->whose ? &w->walls[wall->lead] : wall;
+    const dem_pose *was = &whole->mid, *is = &whole->pose;
+    const dem_vec3 x = demi_unrotate(was->rotation, demi_sub(at, was->position));
+    if (whole->motion.kind == DEM_MOTION_FIXED) return demi_v(0, 0, 0);
+    return demi_add(demi_sub(is->position, was->position),
+                    demi_sub(demi_rotate(is->rotation, x), demi_rotate(was->rotation, x)));
+}
 /* The candidates of one body on one wall. In a periodic world several images of the body may be
    near the wall, and of a tessellation several cells; demi_view_next steps through them in list
    order. */
@@ -25,6 +39,7 @@ typedef struct demi_view {
     int count, left;               /* left: count, plus those of later images */
     int32_t base;                  /* added to the numbers of elements: tells cells apart */
     int several;                   /* 1: other surfaces are near the body, see demi_kept_cover */
+    int late;                      /* 1: the body was just set, and moves along with the wall */
     dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
 /* Returns the view of candidates first .. last - 1 of work group d, before its first image. The
@@ -41,7 +56,7 @@ DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last
     v.from = w->wall_shift + 3*(size_t)k;
     v.cell = w->wall_cell + k;
     v.base = 0;
-    v.count = v.several = 0;
+    v.count = v.several = v.late = 0;
     v.left = last - first;
     return v;
 }
@@ -58,6 +73,8 @@ DEM_INLINE int demi_view_next(demi_view *v) {
         for (v->count = 1; v->count < v->left && v->cell[0] == v->cell[v->count] &&
              !memcmp(v->from, v->from + 3*v->count, 3*sizeof *v->from); v->count++) continue;
     v->shift = demi_at(v->from);
+    if (v->late)
+        v->shift = demi_add(v->shift, demi_wall_carry(v->w, v->wall, demi_add(v->at, v->shift)));
     v->x = demi_unrotate(v->wall->pose.rotation,
                          demi_sub(demi_add(v->at, v->shift), v->wall->pose.position));
     if (v->wall->step[0].x > 0) {

@@ -321,19 +321,19 @@ typedef struct demi_spot {
     const dem_real *memory;        /* real e is memory[e*stride] */
     size_t stride;
 } demi_spot;
-/* Returns what is to be added to the gap of a constraint, m, if one of the two is half a step ahead
-   and the other is not, being a body that was just set (demi_move_midpoint): the gap is that at the
-   time of the latter. */
+/* Returns what is to be added to the gap of two bodies, m, if one of them is half a step ahead and
+   the other is not, being one that was just set (demi_move_midpoint): the gap is that at the time
+   of the latter. At walls contacts are those of that time (demi_wall_carry). */
 static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
                                   const demi_spot *o) {
-    const int wall = k && k->b < 0, a = w->bodies.went[m->a], b = wall || w->bodies.went[m->b];
     dem_vec3 v;
+    int a, b;
+    if (k && k->b < 0) return 0;
+    a = w->bodies.went[m->a];
+    b = w->bodies.went[m->b];
     if (a == b) return 0;
-    if (a) v = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a);
-    else if (wall) {
-        const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
-        v = demi_surface_at(&w->walls[k->wall].ahead, demi_add(x, k->arm_a));
-    } else v = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);
+    v = a ? demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a)
+          : demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);
     return demi_dot(v, o->normal)*(a ? w->solver.dt : -w->solver.dt)/2;
 }
 /* Returns the geometry and the history of a constraint of domain d. */

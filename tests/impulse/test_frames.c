@@ -36,6 +36,40 @@ static double frames_bounce(double lift, int wait) {
     dem_world_destroy(w);
     return high;
 }
+/* Sets v[0..2] to the velocity, m/s, relative to the frame, after two steps of a grain that is set at the edge of a
+   hole (kind 0), within a cylinder (1) or at the edge of a mesh (2). The frame moves at `lift` times (2, -1, 4) m/s. */
+static void frames_edge(int kind, double lift, double *v) {
+    static dem_real corners[] = {0, 0, 0, DEM_R(-0.02), 0, 0, DEM_R(-0.02), DEM_R(0.02), 0, 0, DEM_R(0.02), 0};
+    static int32_t facets[] = {0, 1, 2, 0, 2, 3};
+    static const double x[3][3] = {{-1e-3, 0, 0.2e-3}, {3.95e-3, 1e-3, 0}, {0.3e-3, 0.01, 0.9e-3}};
+    dem_world *w = frames_world(at(0, 0, 0), 2e-4);
+    const dem_material m = scene_material(w, 1e7, 0.5, 0.3, 0);
+    dem_sieve_desc sieve = DEM_SIEVE_DESC;
+    dem_motion along = DEM_MOTION;
+    dem_mesh mesh;
+    dem_body grain;
+    dem_wall wall;
+    mesh.vertex_count = 4;
+    mesh.triangle_count = 2;
+    mesh.vertices = corners;
+    mesh.triangles = facets;
+    sieve.kind = DEM_SIEVE_ROUND;
+    sieve.aperture = DEM_R(1.7e-3);
+    sieve.bar = DEM_R(0.9e-3);
+    wall = kind == 0 ? dem_wall_sieve_add(w, m, &sieve)
+        : kind == 1 ? dem_wall_cylinder_add(w, m, at(0, 0, 0), at(0, 0, 1), DEM_R(5e-3), 1)
+        : dem_wall_mesh_add(w, m, &mesh);
+    along.kind = DEM_MOTION_TRANSLATING;
+    along.velocity = at(2*lift, -lift, 4*lift);
+    dem_wall_motion_set(w, wall, &along);
+    grain = dem_sphere_add(w, m, DEM_R(1e-3), at(x[kind][0], x[kind][1], x[kind][2]));
+    scene_move(w, grain, at((kind == 1 ? 1 : -1) + 2*lift, 0.2 - lift, -0.5 + 4*lift), at(0, 0, 0));
+    CHECK(dem_world_step(w, 2) == DEM_OK);
+    v[0] = (double)scene_state(w, grain).velocity.x - 2*lift;
+    v[1] = (double)scene_state(w, grain).velocity.y + lift;
+    v[2] = (double)scene_state(w, grain).velocity.z - 4*lift;
+    dem_world_destroy(w);
+}
 /* Velocity, m/s, relative to the frame, of a grain that has been under way for seven steps when another is added, which
    hits it; the frame moves at `lift`, m/s. */
 static double frames_met(double lift) {
@@ -250,6 +284,16 @@ int main(int argc, char **argv) {
         CHECK_NEAR(frames_bounce(0.25, 7), still, eps);
         CHECK_NEAR(frames_bounce(-0.25, 7), still, eps);
         CHECK_NEAR(frames_bounce(0.5, 7), still, eps);
+    }
+    TEST("a grain that is set at an edge or a curved wall meets it as in a frame that moves along") {
+        double still[3], moved[3];
+        int kind, k;
+        for (kind = 0; kind < 3; kind++) {
+            frames_edge(kind, 0, still);
+            frames_edge(kind, 0.0625, moved);
+            CHECK(fabs(still[0] - (kind == 1 ? 1 : -1)) > 0.01);     /* it has hit */
+            for (k = 0; k < 3; k++) CHECK_NEAR(moved[k], still[k], DEMI_SINGLE ? 1e-4 : 1e-8);
+        }
     }
     TEST("a grain that is added beside others hits one of them as in a frame that moves along") {
         const double eps = DEMI_SINGLE ? 1e-6 : 1e-12;     /* m/s */
