@@ -2,6 +2,10 @@
    SI units; `at` and the like take doubles, so that a scene reads the same in both precisions. */
 #ifndef SCENE_H
 #define SCENE_H
+/* Scenes have the same numbers in all calls, also where a compiler inlines some and could fuse products and sums. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC optimize("fp-contract=off")
+#endif
 #include <stdlib.h>
 
 static inline dem_vec3 at(double x, double y, double z) {

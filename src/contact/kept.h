@@ -736,7 +736,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const demi_kept *old = demi_kept_of(w, d), *end = old + domain->kept, *old_end;
     const int32_t *near_a = w->near.a + d*w->near.stride;
     const int32_t *body = w->wall_body + d*w->wall_stride, *wall = w->wall_id + d*w->wall_stride;
-    const dem_real *gap = w->wall_gap + d*w->wall_stride, gone = demi_walls_gone(w);
+    const dem_real *gap = w->wall_gap + d*w->wall_stride;
+    const dem_real gone = demi_some_late(w, d) ? DEM_R(1e30) : demi_walls_gone(w);
     const int base = d*w->near.stride, walls = domain->walls;
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
@@ -750,7 +751,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     domain->overflow &= ~16;
     if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
     for (; !(domain->overflow & 16); old = old_end) {
-        while (k < walls && gap[k] > gone && !demi_walls_late(w, body[k])) k++;     /* not close */
+        while (k < walls && gap[k] > gone) k++; /* not close enough yet */
         a = k < walls ? body[k] : INT_MAX;
         if (p < own_end) a = DEMI_MIN(a, near_a[p]);
         if (q < cross_end) a = DEMI_MIN(a, near_a[q]);
@@ -769,7 +770,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
         for (; k < end_k; k = last) {
             last = k + 1;
-            if (gap[k] > gone && !demi_walls_late(w, a)) continue;
+            if (gap[k] > gone) continue;
             while (last < end_k && wall[last] == wall[k]) last++;
             demi_kept_wall(w, d, k, last, several, old, (int)(old_end - old));
         }

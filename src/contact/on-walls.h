@@ -14,6 +14,12 @@ DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
 DEM_INLINE int demi_walls_late(const dem_world *w, int body) {
     return demi_response_is(w, DEMI_MIDWAY) && !w->bodies.went[body];
 }
+/* True if there is such a body among those of domain d. */
+DEM_INLINE int demi_some_late(const dem_world *w, int d) {
+    const demi_domain *o = &w->domains[d];
+    return demi_response_is(w, DEMI_MIDWAY) && o->end > o->begin &&
+        memchr(w->bodies.went + o->begin, 0, (size_t)(o->end - o->begin));
+}
 /* Displacement, m, of what is at `at` if it moves half a step ahead with a surface: the contacts of
    a body that was just set are those of its own time. */
 static DEMI_APART dem_vec3 demi_wall_carry(const dem_world *w, const demi_wall *wall, dem_vec3 at) {
