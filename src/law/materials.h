@@ -253,8 +253,8 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     memset(&k, 0, sizeof k);
     s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
     if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
-    if (mill) {  /* moduli of material b, of the wall or the grain */
-        const dem_material_desc *d = &w->materials[b];
+    if (mill) {  /* moduli of the wall, or of the material of the two that was added first */
+        const dem_material_desc *d = &w->materials[wall ? b : DEMI_MIN(a, b)];
         s.E = (double)d->young;
         s.G = s.E/(2*(1 + (double)d->poisson));
         if (wall) { s.R /= 2; s.M /= 2; half = sqrt(0.5); }

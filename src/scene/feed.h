@@ -331,13 +331,13 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
         int looked = 0;                         /* 1: look() was called */
         demi_region g;
         while (w->clock.time >= d->start && w->clock.steps >= f->again && demi_feed_left(f)) {
-            const double rounded = 1e-9*(1 + due);           /* at 3/s, 3 are due at 1 s */
             int done;
             if (f->next < 0) {
                 const uint64_t random = f->random;
+                double one = 1, fed = (double)f->state.total;          /* grains or kg */
                 demi_feed_draw(w, f);
-                if (d->by_mass ? f->state.mass + f->drawn.mass > due + rounded
-                    : (double)f->state.total + 1 > due + rounded) {
+                if (d->by_mass) { one = f->drawn.mass; fed = f->state.mass; }
+                if (fed + one > due + 1e-9*(one + due)) {    /* at 3/s, 3 are due at 1 s */
                     f->random = random;         /* not due yet: the same draw is repeated later */
                     f->next = -1;
                     break;

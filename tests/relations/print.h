@@ -114,6 +114,7 @@ static void rel_assign(const rel_scene *s, const rel_field *f, const rel_set *v)
     if (f->type == REL_INT3) for (k = 0; k < 3; k++) rel_say("%s[%d] = %d; ", f->name, k, (int)v->v[k]);
     else if (f->type == REL_REAL_ARRAY || f->type == REL_DOUBLE_ARRAY || f->type == REL_REF_ARRAY)
         for (k = 0; k < v->count; k++) {
+            if (f->type == REL_REF_ARRAY && s->pool[v->at + k] < 0) continue;      /* a sphere, as by default */
             rel_say("%s[%d] = ", f->name, k);
             if (f->type == REL_REF_ARRAY) rel_name(s, (int)s->pool[v->at + k]);
             else rel_say("%s", rel_number(s->pool[v->at + k]));

@@ -409,6 +409,23 @@ int main(int argc, char **argv) {
         CHECK_REL(c.ct, 11.8243, 5e-6);                               /* psTanDampingCoeff */
         dem_world_destroy(world);
     }
+    TEST("rules of the mill: two grains of different materials touch alike, whichever comes first") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material glass, lining;
+        dem_coefficients c, o;
+        desc.convention = DEM_CONVENTION_MILL;
+        world = dem_world_create(&desc);
+        glass = mill_glass(world);
+        lining = mill_lining(world);
+        CHECK_EQ(dem_coefficients_get(world, glass, lining, DEM_R(1e-3), DEM_R(2e-3), &c), DEM_OK);
+        CHECK_EQ(dem_coefficients_get(world, lining, glass, DEM_R(2e-3), DEM_R(1e-3), &o), DEM_OK);
+        CHECK_REL(c.kn, o.kn, 1e-6);
+        CHECK_REL(c.cn, o.cn, 1e-6);
+        CHECK_REL(c.kt, o.kt, 1e-6);
+        CHECK_REL(c.ct, o.ct, 1e-6);
+        dem_world_destroy(world);
+    }
     TEST("tumbling mill thesis, Fig 5.24 in the standard mode: Hertz, Mindlin and Tsuji with E*, "
          "G*, R*, m*") {
         const double r = mill_radius, m = ball_mass(2500, r);

@@ -217,6 +217,29 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("a feed by mass keeps its rate with grains of any mass") {
+        double radius;
+        for (radius = 4e-3; radius > 1e-6; radius /= 20) {
+            const double one = 2500*4/3.0*3.14159265358979*radius*radius*radius;
+            dem_world *world = world_of(0, 1e-3);
+            dem_feed_desc d = DEM_FEED_DESC;
+            dem_feed_state s;
+            dem_feed feed;
+            d.material = soft(world, 1500*one);    /* alike contact times */
+            d.class_count = 1;
+            d.radius[0] = (dem_real)radius;
+            d.amount[0] = 1000*one;
+            d.by_mass = 1;
+            d.rate = one/10e-3;                    /* a grain in ten steps */
+            d.box = box_of(0, 0, 0, 1, 1, 1);
+            feed = dem_feed_add(world, &d);
+            CHECK_EQ(scene_step(world, 25), DEM_OK);
+            dem_feed_get(world, feed, &s);
+            CHECK_EQ((int)s.total, 2);
+            dem_world_destroy(world);
+        }
+    }
+
     TEST("a limited feed inserts exactly its amount, at once or at a rate, and is then done") {
         int way;
         for (way = 0; way < 2; way++) {
