@@ -1773,24 +1773,6 @@ static void more_tests(void) {
         CHECK(floor_of[1] < 0.05 && floor_of[2] < 0.05);
     }
 
-    TEST("every search finds the same contacts of shapes: heaps fall alike") {
-        static const dem_search searches[5] = {DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_GRID,
-                                               DEM_SEARCH_LINKED_LIST, DEM_SEARCH_HIERARCHICAL, DEM_SEARCH_BINS};
-        double height[5];
-        int k;
-        for (k = 0; k < 5; k++) {
-            dem_world_desc desc = mixture_desc();
-            dem_world *world;
-            desc.search = searches[k];
-            desc.dt = DEM_R(1e-5);
-            world = mixture(&desc, 2);
-            CHECK_EQ(dem_world_step(world, 6000), DEM_OK);
-            height[k] = dem_totals_get(world).centre[2];
-            dem_world_destroy(world);
-        }
-        for (k = 1; k < 5; k++) CHECK_NEAR(height[k], height[0], SINGLE ? 1e-3 : 1e-7);
-    }
-
     TEST("a user-defined linear law moves ellipsoids and clusters as the built-in one does") {
         double height[2];
         int k;
@@ -1808,40 +1790,6 @@ static void more_tests(void) {
             dem_world_destroy(world);
         }
         CHECK_NEAR(height[1], height[0], SINGLE ? 1e-4 : 1e-12);
-    }
-
-    TEST("spheres, ellipsoids and clusters collide with conserved momentum and angular momentum") {
-        const dem_real p[6] = {DEM_R(-0.008), 0, 0, DEM_R(0.008), 0, 0};
-        int i, j;
-        for (i = 0; i < 3; i++)
-            for (j = 0; j < 3; j++) {
-                dem_world_desc desc = linear_desc(2e-6);
-                dem_world *world = dem_world_create(&desc);
-                const dem_material m = soft_stuff(world, 1e6, 0.9, 0.3);
-                dem_shape shape[3];
-                dem_totals before, after;
-                int k;
-                shape[1] = dem_shape_ellipsoid_add(world, at(0.01, 0.012, 0.015));
-                shape[2] = cluster_of(world, 2, p, 0.01, DEM_CLUSTER_UNION);
-                for (k = 0; k < 2; k++) {
-                    const int kind = k ? j : i;
-                    const dem_vec3 x = at(k ? 0.022 : -0.022, k ? 0.003 : 0, k ? 0 : 0.002);
-                    const dem_quat q = dem_quat_about(at(1, 2, k), DEM_R(0.6 + k));
-                    const dem_body b = kind ? dem_body_add(world, m, shape[kind], x, q)
-                                            : dem_sphere_add(world, m, DEM_R(0.012), x);
-                    scene_move(world, b, at(k ? -1 : 1, 0, 0), at(k, -20, 10));
-                }
-                before = dem_totals_get(world);
-                scene_step(world, 20000);
-                after = dem_totals_get(world);
-                for (k = 0; k < 3; k++) {
-                    CHECK_NEAR(after.momentum[k] - before.momentum[k], 0, SINGLE ? 1e-6 : 1e-15);
-                    CHECK_NEAR(after.angular[k] - before.angular[k], 0, SINGLE ? 1e-6 : 1e-15);
-                }
-                CHECK(after.kinetic + after.rotational < 0.99*(before.kinetic + before.rotational));
-                CHECK(dem_counters_get(world).contacts == 0);  /* met and parted */
-                dem_world_destroy(world);
-            }
     }
 
     TEST("clusters with merged contacts collide elastically with conserved energy and momenta, whichever spheres "

@@ -1,5 +1,5 @@
 /* Contacts of clusters with springs: pairs of member spheres in the pruned neighbour list (>>members). They are compared with
-   lone spheres, with closed forms, and with what the library lists, in beds of several work groups and in slabs. */
+   lone spheres, with closed forms, and with what the library lists, in beds of several work groups. */
 #define DEM_IMPLEMENTATION
 #include "../../dem.h"
 #include "../test.h"
@@ -60,10 +60,6 @@ static void add_force(const dem_contact_info *c, dem_real *memory, void *user) {
         sum[demi_body_index(w, "test", c->a)][k] += f[k];
         if (!c->wall) sum[demi_body_index(w, "test", c->b)][k] -= f[k];
     }
-}
-/* Adds the length of a contact's spring of friction, m, between bodies. */
-static void add_length(const dem_contact_info *c, dem_real *memory, void *user) {
-    if (!c->wall) *(double *)user += (double)demi_length(demi_at(memory));
 }
 /* Largest difference between the force on a body and the sum of its listed contacts, over the largest force. */
 static double sums_apart(dem_world *w) {
@@ -331,34 +327,6 @@ int main(int argc, char **argv) {
             }
         }
         remove("build/tmp/members.dem");
-    }
-    TEST("springs of friction between clusters are as long after a run in one or two slabs as after one without") {
-        int merged, count;
-        for (merged = 0; merged < 2; merged++)
-            for (count = 0; count < 3; count++) {
-                static double alone;
-                dem_world_desc desc = DEM_WORLD_DESC;
-                dem_slabs_desc cut = DEM_SLABS_DESC;
-                dem_slabs *s;
-                dem_world *w;
-                double length = 0;
-                desc.cluster_contacts = merged ? DEM_CLUSTER_CONTACTS_MERGED : DEM_CLUSTER_CONTACTS_SEPARATE;
-                w = heap(desc, 3, 60);
-                CHECK_EQ(scene_step(w, 10000), DEM_OK);
-                if (count) {
-                    cut.count = count;
-                    s = dem_slabs_create(w, &cut);
-                    CHECK(s != 0);
-                    CHECK_EQ(dem_slabs_step(s, 1000), DEM_OK);
-                    CHECK_EQ(dem_slabs_collect(s, w), DEM_OK);
-                    dem_slabs_destroy(s);
-                } else CHECK_EQ(scene_step(w, 1000), DEM_OK);
-                CHECK(dem_contacts_each(w, add_length, &length) > 20);
-                if (!count) alone = length;
-                CHECK(alone > 0);
-                CHECK_NEAR(length/alone, 1, wide ? 1e-6 : 0.05);
-                dem_world_destroy(w);
-            }
     }
     return test_end();
 }

@@ -26,7 +26,7 @@ static dem_sieve_desc sieve_of(int sort, double a, double b) {
 /* How far its top is above its middle, m. */
 static double top_of(int sort, double b) { return sort == LAID ? b : b/2; }
 static dem_world *world_of(int impulses, double gravity, double young, double restitution, double friction, double dt,
-                           int threads, dem_material *m) {
+                           dem_material *m) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_material_desc stuff = scene_stuff(impulses ? 0 : young, restitution, friction, 0);
     dem_world *w;
@@ -35,7 +35,7 @@ static dem_world *world_of(int impulses, double gravity, double young, double re
     desc.dt = (dem_real)dt;
     desc.allow_large_dt = !impulses;
     desc.ledger = 1;
-    desc.threads = threads;
+    desc.threads = 1;
     if (impulses) {
         desc.tolerance = fine ? DEM_R(1e-9) : DEM_R(1e-6);
         desc.sweeps = fine ? 20000 : 500;
@@ -112,29 +112,6 @@ static double least_gap(const dem_world *w, dem_shape shape, dem_quat q, dem_vec
     }
     return least;
 }
-/* Rocks, boxes and a shaken sieve. */
-static dem_world *shaken(int impulses, int sort, int threads) {
-    dem_sieve_desc s = sieve_of(sort, 0.008, 0.004);
-    dem_motion shake = DEM_MOTION;
-    dem_material m;
-    dem_world *w = world_of(impulses, earth, 2e6, 0.5, 0.4, impulses ? 5e-4 : 2e-5, threads, &m);
-    uint64_t random = 3;
-    int i;
-    dem_wall wall;
-    wall = dem_wall_sieve_add(w, m, &s);
-    shake.kind = DEM_MOTION_OSCILLATING;
-    shake.velocity = at(0, 0, 1);
-    shake.amplitude = DEM_R(0.002);
-    shake.frequency = 25;
-    CHECK_EQ(dem_wall_motion_set(w, wall, &shake), DEM_OK);
-    box_around(w, m, 0.04, -0.05, 0.08);
-    for (i = 0; i < 60; i++) {
-        const dem_shape rock = i%2 ? scene_rock(w, &random, 16, i%4 == 1 ? 0.007 : 0.004) : scene_box(w, 0.007, 0.006, 0.005);
-        dem_body_add(w, m, rock, at(-0.03 + 0.02*(i%4), -0.03 + 0.02*(i/4%4), 0.015 + 0.018*(i/16)), scene_turn(&random));
-    }
-    return w;
-}
-
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -143,7 +120,7 @@ int main(int argc, char **argv) {
         for (sort = 0; sort < SORTS; sort++) {
             dem_sieve_desc s = sieve_of(sort, 0.012, 0.005);
             dem_material m;
-            dem_world *w = world_of(0, earth, 2e7, 1, 0, fine ? 1e-5 : 2e-5, 1, &m);
+            dem_world *w = world_of(0, earth, 2e7, 1, 0, fine ? 1e-5 : 2e-5, &m);
             uint64_t random = 7;
             double before, worst = 0;
             int i, result = DEM_OK;
@@ -174,7 +151,7 @@ int main(int argc, char **argv) {
     TEST("sieve rocks: the gap to a sieve equals that of sampled surface points, and moving out by it removes the "
          "overlap") {
         dem_material m;
-        dem_world *w = world_of(1, 0, 0, 0, 0, 1e-3, 1, &m);
+        dem_world *w = world_of(1, 0, 0, 0, 0, 1e-3, &m);
         uint64_t random = 19;
         int sort, k, apart = 0, within = 0, all = 0, sheet;
         for (sort = 0; sort < SORTS; sort++)
@@ -216,7 +193,7 @@ int main(int argc, char **argv) {
                     const double a = 0.012, b = 0.004, edge = large ? 1.9*a : sort >= ROUND ? 0.65*a : 0.9*a;
                     dem_sieve_desc s = sieve_of(sort, a, b);
                     dem_material m;
-                    dem_world *w = world_of(impulses, earth, 1e8, 0.2, 0.3, impulses ? 1e-3 : 2e-5, 1, &m);
+                    dem_world *w = world_of(impulses, earth, 1e8, 0.2, 0.3, impulses ? 1e-3 : 2e-5, &m);
                     dem_body cube;
                     double z;
                     dem_wall_sieve_add(w, m, &s);
@@ -237,7 +214,7 @@ int main(int argc, char **argv) {
             const double edge = 0.03, angle = 0.7;
             dem_material m;
             const double dt = sort < SQUARE ? 1e-4 : 1e-3;      /* a round wire is a plane for a step */
-            dem_world *w = world_of(1, 0, 0, 0, 0.5, dt, 1, &m);
+            dem_world *w = world_of(1, 0, 0, 0, 0.5, dt, &m);
             dem_body block;
             dem_wall_sieve_add(w, m, &s);
             block = dem_body_add(w, m, scene_box(w, edge, edge, edge/2), at(3e-4, 2e-4, top_of(sort, 0.004) + edge/4), straight);
@@ -259,7 +236,7 @@ int main(int argc, char **argv) {
                                         DEM_R(0.015)};
                 dem_sieve_desc s = sieve_of(sort, a, 0.004);
                 dem_material m;
-                dem_world *w = world_of(impulses, earth, 1e7, 0.2, 0.5, impulses ? 1e-3 : 2e-5, 1, &m);
+                dem_world *w = world_of(impulses, earth, 1e7, 0.2, 0.5, impulses ? 1e-3 : 2e-5, &m);
                 dem_body wedge;
                 dem_wall sieve = dem_wall_sieve_add(w, m, &s);
                 wedge = dem_body_add(w, m, dem_shape_polyhedron_add(w, 5, p), at(0, 0, 0.02), straight);
@@ -278,7 +255,7 @@ int main(int argc, char **argv) {
             const double half = 0.005*sqrt(0.5)*1.01;
             dem_sieve_desc s = sieve_of(ROUND, 0.01, 0.004);
             dem_material m;
-            dem_world *w = world_of(0, 0, 1e7, 0.3, 0.5, fine ? 5e-6 : 1e-5, 1, &m);
+            dem_world *w = world_of(0, 0, 1e7, 0.3, 0.5, fine ? 5e-6 : 1e-5, &m);
             dem_body prism;
             double most = 0, twist = 0;
             int i;
@@ -299,26 +276,6 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("sieve rocks: a shaking sieve has the same bits for any number of threads and after a restart") {
-        int impulses, sort;
-        for (impulses = 0; impulses < 2; impulses++)
-            for (sort = WEAVE; sort < SORTS; sort += 3) {
-                const int steps = impulses ? 200 : 3000;
-                dem_world *w = shaken(impulses, sort, 1), *v = shaken(impulses, sort, 3), *u;
-                CHECK_EQ(scene_step(w, steps), DEM_OK);
-                CHECK_EQ(scene_step(v, steps/2), DEM_OK);
-                CHECK_EQ(dem_checkpoint_write(v, "build/tmp/sieve_rocks.dem"), DEM_OK);
-                u = shaken(impulses, sort, 1);
-                CHECK_EQ(dem_checkpoint_read(u, "build/tmp/sieve_rocks.dem"), DEM_OK);
-                CHECK_EQ(scene_step(u, steps - steps/2), DEM_OK);
-                CHECK(dem_contacts_get(w, 0, 0) > 20);
-                CHECK_EQ(dem_world_hash_get(u), dem_world_hash_get(w));
-                dem_world_destroy(u);
-                dem_world_destroy(v);
-                dem_world_destroy(w);
-            }
-    }
-
     TEST("sieve rocks: reduced holes and sieves cut from a disc are rejected, unions with an ellipsoid and sheets accepted") {
         static const char *const says[2] = {"reduced holes are only for spheres", "cut from a disc"};
         int k, order, egg;
@@ -327,7 +284,7 @@ int main(int argc, char **argv) {
                 for (order = 0; order < 2; order++) {
                     dem_sieve_desc s = sieve_of(SQUARE, 0.01, 0.004);
                     dem_material m;
-                    dem_world *w = world_of(k == 3, 0, 1e7, 0.5, 0, 1e-5, 1, &m);
+                    dem_world *w = world_of(k == 3, 0, 1e7, 0.5, 0, 1e-5, &m);
                     const dem_real x[6] = {0, 0, 0, DEM_R(0.01), 0, 0};
                     dem_shape two[2], shape;
                     int done = 0, turn;

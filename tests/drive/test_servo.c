@@ -1,5 +1,5 @@
 /* Servo walls: they reach the load that they are led to, account for their work, stop at their limit, and have the same bits
-   after a restart, on threads and in slabs. */
+   in a slab. */
 #define DEM_IMPLEMENTATION
 #include "../../dem.h"
 #include "../test.h"
@@ -79,7 +79,7 @@ static void any_grain(dem_world *world, dem_material material, int kind) {
    settles once, then it starts from the positions. */
 enum { GRAINS = 150 };
 static const double W = 0.012;
-static dem_world *bed(int periodic, int threads, dem_material *material, double *top) {
+static dem_world *bed(int periodic, dem_material *material, double *top) {
     static dem_real x[2][3*GRAINS], r[2][GRAINS];
     static int settled[2];
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -87,7 +87,7 @@ static dem_world *bed(int periodic, int threads, dem_material *material, double 
     dem_world *world;
     int i, k;
     desc.gravity.z = DEM_R(-9.81);
-    desc.threads = threads;
+    desc.threads = 1;
     desc.impact_speed = DEM_R(0.3);
     if (periodic) {
         desc.domain = box_of(0, 0, -1, W, W, 1);
@@ -217,7 +217,7 @@ int main(int argc, char **argv) {
             dem_motion motion;
             dem_motion_row rows[5];
             dem_material m;
-            dem_world *world = bed(periodic, 1, &m, &top);
+            dem_world *world = bed(periodic, &m, &top);
             dem_wall wall;
             int n = 0;
             bed_loads(&motion, rows);
@@ -244,7 +244,7 @@ int main(int argc, char **argv) {
             double top;
             dem_motion motion = press(0.05, 0.7);
             dem_material m;
-            dem_world *world = bed(0, 1, &m, &top);
+            dem_world *world = bed(0, &m, &top);
             dem_ledger before = dem_ledger_get(world), after;
             dem_wall_loads loads;
             dem_wall wall;
@@ -359,37 +359,13 @@ int main(int argc, char **argv) {
         CHECK_REL(servo_of(world, wall).force, 4, 1e-4);
         dem_world_destroy(world);
     }
-    TEST("a checkpoint in mid-run continues with the bits of a servo wall, on any number of threads") {
-        double top;
-        uint64_t hash[4];
-        dem_servo state[4];
-        int k;
-        for (k = 0; k < 4; k++) {                       /* straight; to be saved; restored; on two threads */
-            dem_motion motion;
-            dem_motion_row rows[5];
-            dem_material m;
-            dem_world *world = bed(0, k == 3 ? 2 : 1, &m, &top);
-            dem_wall wall;
-            bed_loads(&motion, rows);
-            wall = lid(world, m, top, &motion);
-            if (k != 2) CHECK_EQ(scene_step(world, 3000), DEM_OK);
-            if (k == 1) CHECK_EQ(dem_checkpoint_write(world, "build/tmp/servo.dem"), DEM_OK);
-            if (k == 2 && dem_checkpoint_read(world, "build/tmp/servo.dem") != DEM_OK) puts(dem_world_error_get(world));
-            CHECK_EQ(scene_step(world, 3000), DEM_OK);
-            hash[k] = dem_world_hash_get(world);
-            state[k] = servo_of(world, wall);
-            dem_world_destroy(world);
-        }
-        for (k = 1; k < 4; k++) CHECK(hash[k] == hash[0] && !memcmp(&state[k], &state[0], sizeof state[0]));
-        remove("build/tmp/servo.dem");
-    }
     TEST("one slab gives the bits of a servo wall in a world; three slabs reach the same load") {
         int count;
         for (count = 1; count <= 3; count += 2) {
             double top;
             dem_motion motion = press(0.05, 0.5);
             dem_material m;
-            dem_world *one = bed(0, 1, &m, &top), *other = bed(0, 1, &m, &top);
+            dem_world *one = bed(0, &m, &top), *other = bed(0, &m, &top);
             dem_slabs_desc desc = DEM_SLABS_DESC;
             dem_slabs *slabs;
             const dem_wall wall = lid(one, m, top, &motion);

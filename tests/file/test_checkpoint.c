@@ -35,10 +35,9 @@ typedef struct play {
     /* late: grains come and go in the second half too */
     int law, steps, nx, ny, nz, threads, late;
     double dt;                                   /* 0: chosen */
-    dem_search search;
 } play;
 static play play_make(int integrator, int law) {
-    play p = {DEM_INTEGRATOR_VELOCITY_VERLET, 0, 60, 4, 4, 3, 1, 1, 5e-6, DEM_SEARCH_AUTO};
+    play p = {DEM_INTEGRATOR_VELOCITY_VERLET, 0, 60, 4, 4, 3, 1, 1, 5e-6};
     p.integrator = (dem_integrator)integrator;
     p.law = law;
     return p;
@@ -57,7 +56,6 @@ static dem_world *play_world(const play *p) {
     int k;
     desc.threads = p->threads;
     desc.integrator = p->integrator;
-    desc.search = p->search;
     desc.gravity = at(0, 0, -500);              /* keeps the heap together in a short time */
     desc.tangent_law = tangents[p->law];
     if (p->law == LAW_EPSD) desc.rolling_law = DEM_ROLLING_EPSD;
@@ -780,14 +778,6 @@ int main(int argc, char **argv) {
         play p = play_make(DEM_INTEGRATOR_VELOCITY_VERLET, LAW_MINDLIN);
         p.dt = 0;
         play_both(&p);
-    }
-    TEST("2N steps are N, a checkpoint and N, for every search") {
-        int search;
-        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_HIERARCHICAL; search++) {
-            play p = play_make(DEM_INTEGRATOR_VELOCITY_VERLET, LAW_SPRING);
-            p.search = (dem_search)search;
-            play_both(&p);
-        }
     }
     TEST("2N steps are N, a checkpoint and N, with several domains and threads") {
         play p = play_make(DEM_INTEGRATOR_VELOCITY_VERLET, LAW_EPSD);

@@ -213,29 +213,6 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("a sliding contact resumes from a checkpoint with the same bits") {
-        for (k = 0; k < 3*CARRIERS; k++) {
-            slide s = slide_of(k%CARRIERS, k/CARRIERS == 2 ? 1e-4 : 1.2e-5), t = s;
-            if (k/CARRIERS == 1) { s.desc.law = slide_law; s.desc.law_memory = 3; s.desc.law_vectors = 1; }
-            if (k/CARRIERS == 2) s.desc.response = DEM_RESPONSE_IMPULSES;
-            t.desc = s.desc;
-            slide_begin(&s);
-            slide_begin(&t);
-            s.stiffness = t.stiffness = mu_slide*s.mass*g_earth/1e-5;
-            s.damping = t.damping = 2*sqrt(s.stiffness*s.mass);
-            s.torque_time = t.torque_time = k/CARRIERS == 2 ? 2e-3 : 2e-5;
-            dem_world_run(s.world, 0.02, 0, 0);
-            CHECK_EQ(dem_checkpoint_write(s.world, "build/tmp/friction.ckpt"), DEM_OK);
-            CHECK_EQ(dem_checkpoint_read(t.world, "build/tmp/friction.ckpt"), DEM_OK);
-            CHECK_EQ(dem_world_hash_get(s.world) == dem_world_hash_get(t.world), 1);
-            scene_step(s.world, 100);
-            scene_step(t.world, 100);
-            CHECK_EQ(dem_world_hash_get(s.world) == dem_world_hash_get(t.world), 1);
-            dem_world_destroy(s.world);
-            dem_world_destroy(t.world);
-        }
-    }
-
     TEST("an impact of a slipping sphere takes mu (1 + e) v under springs and impulses, however far ahead impulses look") {
         static const double dts[] = {1e-6, 1e-3, 1e-4, 1e-5};
         for (k = 0; k < 4; k++) {

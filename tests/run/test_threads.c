@@ -163,30 +163,6 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("threads, an intermediate checkpoint and a second world give one hash") {
-        static const int threads[] = {1, 2, 3, 4, 8};
-        static const char path[] = "build/tmp/threads.ckpt";
-        const outcome one = bed(1, 40, 40);
-        size_t i;
-        for (i = 0; i < 5; i++) {
-            dem_wall plane;
-            dem_world *first = bed_world(threads[i], &plane), *second;
-            int k;
-            CHECK_EQ(scene_step(first, 20), DEM_OK);
-            CHECK_EQ(dem_checkpoint_write(first, path), DEM_OK);
-            second = bed_world(threads[4 - i], &plane);     /* goes on with other threads */
-            CHECK_EQ(dem_checkpoint_read(second, path), DEM_OK);
-            for (k = 0; k < 20; k++) {                      /* step by step, side by side */
-                CHECK_EQ(scene_step(first, 1), DEM_OK);
-                CHECK_EQ(scene_step(second, 1), DEM_OK);
-            }
-            CHECK_EQ(dem_world_hash_get(first), one.hash);
-            CHECK_EQ(dem_world_hash_get(second), one.hash);
-            dem_world_destroy(first);
-            dem_world_destroy(second);
-        }
-        remove(path);
-    }
     TEST("forty-two steps in one call, singly or in sevens are the same") {
         const outcome a = bed(2, 42, 42), b = bed(2, 42, 1), c = bed(2, 42, 7);
         check_same(&a, &b);

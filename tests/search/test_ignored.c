@@ -203,47 +203,6 @@ int main(int argc, char **argv) {
                 dem_world_destroy(both);
             }
     }
-    TEST("ignored pairs stay ignored in slabs, after a restart, on several threads and in feeds") {
-        const char *const saved = "build/tmp/ignored.ckpt";
-        dem_material stuff[3];
-        dem_world *world = mixture(DEM_RESPONSE_SPRINGS, 0, 1, 1, stuff), *again, *more;
-        dem_slabs_desc deal = DEM_SLABS_DESC;
-        dem_feed_desc feed = DEM_FEED_DESC;
-        dem_slabs *slabs;
-        feed.material = stuff[1];
-        feed.box = box_of(0.001, 0.001, 0.001, 0.049, 0.029, 0.029);
-        feed.class_count = 1;
-        feed.radius[0] = DEM_R(1e-3);
-        feed.amount[0] = 40;
-        feed.limited = 1;
-        feed.rate = 1e5;
-        CHECK(dem_feed_add(world, &feed).id > 0);
-        again = mixture(DEM_RESPONSE_SPRINGS, 0, 3, 0, stuff);
-        CHECK(dem_feed_add(again, &feed).id > 0);
-        more = mixture(DEM_RESPONSE_SPRINGS, 0, 1, 0, stuff);
-        CHECK(dem_feed_add(more, &feed).id > 0);
-        must(world, dem_world_step(world, 100));
-        must(world, dem_checkpoint_write(world, saved));
-        must(again, dem_checkpoint_read(again, saved));
-        must(more, dem_checkpoint_read(more, saved));
-        deal.count = 2;
-        slabs = dem_slabs_create(more, &deal);
-        CHECK(slabs != 0);
-        must(world, dem_world_step(world, 200));
-        must(again, dem_world_step(again, 200));
-        CHECK(dem_world_hash_get(world) == dem_world_hash_get(again));
-        if (slabs) {
-            CHECK_EQ(dem_slabs_step(slabs, 200), DEM_OK);
-            CHECK_EQ(dem_slabs_collect(slabs, more), DEM_OK);
-            CHECK_NEAR(apart(world, more), 0, sizeof(dem_real) == 8 ? 1e-10 : 1e-4);
-        }
-        CHECK_EQ(dem_body_counts_get(world).present, 2*MOST + 40);
-        dem_slabs_destroy(slabs);
-        dem_world_destroy(world);
-        dem_world_destroy(again);
-        dem_world_destroy(more);
-        remove(saved);
-    }
     TEST("a ball on two halves of a floor falls when it ignores both, and lands when it feels them again") {
         int mesh, shape;
         for (mesh = 0; mesh < 2; mesh++)
