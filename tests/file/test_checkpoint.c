@@ -647,12 +647,6 @@ static dem_real larger(const dem_body_state *body, dem_body id, double time, voi
     (void)user;
     return DEM_R(0.3)*body->radius;
 }
-/* Hertz's law, which tells impossible energies. */
-static void endless_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
-    dem_law_hertz(c, memory, f);
-    f->energy.dashpot = (dem_real)HUGE_VAL;
-    f->energy.elastic = f->energy.dashpot - f->energy.dashpot;
-}
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
