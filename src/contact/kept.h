@@ -563,8 +563,7 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
     const dem_real *balls;
     int k, count;
     v.several = several;
-    v.late = demi_walls_late(w, body);
-    if (v.late) v.gone = DEM_R(1e30);           /* gaps are those half a step ahead */
+    if ((v.late = demi_walls_late(w, body))) v.gone = DEM_R(1e30);     /* gaps: half a step ahead */
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
         demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);

@@ -20,15 +20,12 @@ DEM_INLINE int demi_some_late(const dem_world *w, int d) {
     return demi_response_is(w, DEMI_MIDWAY) && o->end > o->begin &&
         memchr(w->bodies.went + o->begin, 0, (size_t)(o->end - o->begin));
 }
-/* Displacement, m, of what is at `at` if it moves half a step ahead with a surface: the contacts of
-   a body that was just set are those of its own time. */
+/* Displacement, m, of what is at `at` if it moves half a step ahead with a surface. */
 static DEMI_APART dem_vec3 demi_wall_carry(const dem_world *w, const demi_wall *wall, dem_vec3 at) {
     const demi_wall *whole = wall->scale || wall->whose ? &w->walls[wall->lead] : wall;
-    const dem_pose *was = &whole->mid, *is = &whole->pose;
-    const dem_vec3 x = demi_unrotate(was->rotation, demi_sub(at, was->position));
-    if (whole->motion.kind == DEM_MOTION_FIXED) return demi_v(0, 0, 0);
-    return demi_add(demi_sub(is->position, was->position),
-                    demi_sub(demi_rotate(is->rotation, x), demi_rotate(was->rotation, x)));
+    const dem_vec3 x = demi_unrotate(whole->mid.rotation, demi_sub(at, whole->mid.position));
+    return demi_add(demi_sub(whole->pose.position, whole->mid.position), demi_sub(
+        demi_rotate(whole->pose.rotation, x), demi_rotate(whole->mid.rotation, x)));
 }
 /* The candidates of one body on one wall. In a periodic world several images of the body may be
    near the wall, and of a tessellation several cells; demi_view_next steps through them in list

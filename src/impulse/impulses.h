@@ -321,16 +321,12 @@ typedef struct demi_spot {
     const dem_real *memory;        /* real e is memory[e*stride] */
     size_t stride;
 } demi_spot;
-/* Returns what is to be added to the gap of two bodies, m, if one of them is half a step ahead and
-   the other is not, being one that was just set (demi_move_midpoint): the gap is that at the time
-   of the latter. At walls contacts are those of that time (demi_wall_carry). */
+/* Returns what is to be added to the gap of two bodies, m, if one was just set and is not half a
+   step ahead: the gap is that at its time. At walls contacts are those of that time, see `late`. */
 static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
                                   const demi_spot *o) {
+    const int a = w->bodies.went[m->a], b = k && k->b < 0 ? a : w->bodies.went[m->b];
     dem_vec3 v;
-    int a, b;
-    if (k && k->b < 0) return 0;
-    a = w->bodies.went[m->a];
-    b = w->bodies.went[m->b];
     if (a == b) return 0;
     v = a ? demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a)
           : demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);

@@ -285,7 +285,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(frames_bounce(-0.25, 7), still, eps);
         CHECK_NEAR(frames_bounce(0.5, 7), still, eps);
     }
-    TEST("a grain that is set at an edge or a curved wall meets it as in a frame that moves along") {
+    TEST("a grain that is set at an edge or a curved wall hits it as in a frame that moves along") {
         double still[3], moved[3];
         int kind, k;
         for (kind = 0; kind < 3; kind++) {
