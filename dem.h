@@ -104,6 +104,7 @@
        >>stress            cells led to a strain or stress; stress and fabric of the whole
        >>fields            averages on a grid: solid fraction, velocity, stress
        >>events            contacts from beginning to end; spectra of impacts; wear
+       >>features          what optional features add to a step
        >>step              one step of a scene, phase by phase
        >>runs              runs of many steps, until a time or until grains are at rest
        >>world             creating and destroying a world
@@ -6395,6 +6396,31 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
     }
 }
 #define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
+/* --- reading a checkpoint: the reader, and the message that a value is impossible --- */
+
+/* A checkpoint being read. */
+typedef struct demi_reader {
+    dem_world *w, *t;              /* the world; its twin */
+    const char *path;
+    demi_stream s;                 /* what is left of the file */
+} demi_reader;
+
+/* Fails with the message that a value is impossible although the checksum is correct. which: the
+   index of its item, or -1. Returns 0. */
+static int demi_lie(const demi_reader *r, const char *what, long long which) {
+    char number[32] = "";
+    if (which >= 0) demi_words(number, sizeof number, " %lld", which + 1);
+    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: invalid %s%s, although the "
+              "checksum is correct; the file was altered, or the run that wrote it had blown up: "
+              "use an older checkpoint", r->path, what, number);
+    return 0;
+}
+/* True if the rest of the file can hold so many items of `size` bytes. */
+static int demi_left(const demi_reader *r, int64_t count, size_t size) {
+    return count >= 0 && (uint64_t)count <= r->s.left/size;
+}
+/* True if x is finite and at least `least`. */
+static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }
 
 /* ---------------------------------------------------------------------------------------------
    >>team
@@ -7009,8 +7035,8 @@ static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_
     memset(&k, 0, sizeof k);
     s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
     if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
-    if (mill) {  /* moduli of material b, of the wall or the grain */
-        const dem_material_desc *d = &w->materials[b];
+    if (mill) {  /* moduli of the wall, or of the material of the two that was added first */
+        const dem_material_desc *d = &w->materials[wall ? b : DEMI_MIN(a, b)];
         s.E = (double)d->young;
         s.G = s.E/(2*(1 + (double)d->poisson));
         if (wall) { s.R /= 2; s.M /= 2; half = sqrt(0.5); }
@@ -20270,6 +20296,23 @@ static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
     return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
 }
+/* True if a body was just set and is not half a step ahead with the walls (demi_move_midpoint). */
+DEM_INLINE int demi_walls_late(const dem_world *w, int body) {
+    return demi_response_is(w, DEMI_MIDWAY) && !w->bodies.went[body];
+}
+/* True if there is such a body among those of domain d. */
+DEM_INLINE int demi_some_late(const dem_world *w, int d) {
+    const demi_domain *o = &w->domains[d];
+    return demi_response_is(w, DEMI_MIDWAY) && o->end > o->begin &&
+        memchr(w->bodies.went + o->begin, 0, (size_t)(o->end - o->begin));
+}
+/* Displacement, m, of what is at `at` if it moves half a step ahead with a surface. */
+static DEMI_APART dem_vec3 demi_wall_carry(const dem_world *w, const demi_wall *wall, dem_vec3 at) {
+    const demi_wall *whole = wall->scale || wall->whose ? &w->walls[wall->lead] : wall;
+    const dem_vec3 x = demi_unrotate(whole->mid.rotation, demi_sub(at, whole->mid.position));
+    return demi_add(demi_sub(whole->pose.position, whole->mid.position), demi_sub(
+        demi_rotate(whole->pose.rotation, x), demi_rotate(whole->mid.rotation, x)));
+}
 /* The candidates of one body on one wall. In a periodic world several images of the body may be
    near the wall, and of a tessellation several cells; demi_view_next steps through them in list
    order. */
@@ -20285,6 +20328,7 @@ typedef struct demi_view {
     int count, left;               /* left: count, plus those of later images */
     int32_t base;                  /* added to the numbers of elements: tells cells apart */
     int several;                   /* 1: other surfaces are near the body, see demi_kept_cover */
+    int late;                      /* 1: the body was just set, and moves along with the wall */
     dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
 /* Returns the view of candidates first .. last - 1 of work group d, before its first image. The
@@ -20301,7 +20345,7 @@ DEM_INLINE demi_view demi_view_of(const dem_world *w, int d, int first, int last
     v.from = w->wall_shift + 3*(size_t)k;
     v.cell = w->wall_cell + k;
     v.base = 0;
-    v.count = v.several = 0;
+    v.count = v.several = v.late = 0;
     v.left = last - first;
     return v;
 }
@@ -20318,6 +20362,8 @@ DEM_INLINE int demi_view_next(demi_view *v) {
         for (v->count = 1; v->count < v->left && v->cell[0] == v->cell[v->count] &&
              !memcmp(v->from, v->from + 3*v->count, 3*sizeof *v->from); v->count++) continue;
     v->shift = demi_at(v->from);
+    if (v->late)
+        v->shift = demi_add(v->shift, demi_wall_carry(v->w, v->wall, demi_add(v->at, v->shift)));
     v->x = demi_unrotate(v->wall->pose.rotation,
                          demi_sub(demi_add(v->at, v->shift), v->wall->pose.position));
     if (v->wall->step[0].x > 0) {
@@ -24309,7 +24355,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
 DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
     const dem_real *R = v->wall->pose.rotation;
     dem_vec3 x;
-    if (v->wall->kind != DEMI_WALL_PLANE || v->left > 1) return 0;
+    if (v->wall->kind != DEMI_WALL_PLANE || v->left > 1 || v->late) return 0;
     x = demi_sub(demi_add(at, demi_at(v->from)), v->wall->pose.position);
     return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(v->w, r))*DEM_R(1.001);
 }
@@ -24323,6 +24369,7 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
     const dem_real *balls;
     int k, count;
     v.several = several;
+    if ((v.late = demi_walls_late(w, body))) v.gone = DEM_R(1e30);     /* gaps: half a step ahead */
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
         demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
@@ -24414,7 +24461,8 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
     int k;
     if (!demi_wall_is(wall, DEMI_FACETS | DEMI_SMOOTH) || wall->step[0].x > 0) return 0;
     for (k = d*w->wall_stride + first; k < d*w->wall_stride + last; k++) {
-        const dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
+        dem_vec3 at = demi_add(c->arm_b, demi_at(w->wall_shift + 3*(size_t)k));
+        if (demi_walls_late(w, c->a)) at = demi_add(at, demi_wall_carry(w, wall, at));
         if (level && w->wall_id[k] == surface && demi_faceted(wall) &&
             !(DEMI_ABS(demi_dot(demi_at(wall->planes + 4*w->wall_element[k]), n)) >
               DEM_R(DEMI_FLUSH))) continue;
@@ -24493,7 +24541,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const demi_kept *old = demi_kept_of(w, d), *end = old + domain->kept, *old_end;
     const int32_t *near_a = w->near.a + d*w->near.stride;
     const int32_t *body = w->wall_body + d*w->wall_stride, *wall = w->wall_id + d*w->wall_stride;
-    const dem_real *gap = w->wall_gap + d*w->wall_stride, gone = demi_walls_gone(w);
+    const dem_real *gap = w->wall_gap + d*w->wall_stride;
+    const dem_real gone = demi_some_late(w, d) ? DEM_R(1e30) : demi_walls_gone(w);
     const int base = d*w->near.stride, walls = domain->walls;
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
@@ -26121,19 +26170,15 @@ typedef struct demi_spot {
     const dem_real *memory;        /* real e is memory[e*stride] */
     size_t stride;
 } demi_spot;
-/* Returns what is to be added to the gap of a constraint, m, if one of the two is half a step ahead
-   and the other is not, being a body that was just set (demi_move_midpoint): the gap is that at the
-   time of the latter. */
+/* Returns what is to be added to the gap of two bodies, m, if one was just set and is not half a
+   step ahead: the gap is that at its time. At walls contacts are those of that time, see `late`. */
 static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
                                   const demi_spot *o) {
-    const int wall = k && k->b < 0, a = w->bodies.went[m->a], b = wall || w->bodies.went[m->b];
+    const int a = w->bodies.went[m->a], b = k && k->b < 0 ? a : w->bodies.went[m->b];
     dem_vec3 v;
     if (a == b) return 0;
-    if (a) v = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a);
-    else if (wall) {
-        const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
-        v = demi_surface_at(&w->walls[k->wall].ahead, demi_add(x, k->arm_a));
-    } else v = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);
+    v = a ? demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a)
+          : demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);
     return demi_dot(v, o->normal)*(a ? w->solver.dt : -w->solver.dt)/2;
 }
 /* Returns the geometry and the history of a constraint of domain d. */
@@ -26502,6 +26547,37 @@ DEM_API dem_result dem_joint_remove(dem_world *w, dem_joint joint) {
     memmove(w->joints + i, w->joints + i + 1, (size_t)(w->joint_count - i)*sizeof *w->joints);
     demi_scene_changed(w);
     return DEM_OK;
+}
+/* --- joints in a checkpoint, see >>features. They are state and not scene, because they appear and
+       disappear with bodies. --- */
+
+static void demi_joints_visit(dem_world *w, demi_stream *s) {
+    if (w->joint_count) demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
+}
+static int demi_joints_grow(dem_world *t) {
+    return DEMI_GROW(t, t->joints, (size_t)t->joint_count);
+}
+/* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
+   id of a body that no longer exists names nothing. */
+static int demi_joints_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->joint_count; i++) {
+        const demi_joint *j = &r->t->joints[i];
+        const dem_joint_state *o = &j->state;
+        if (demi_rows_bad(r->w, demi_joint_fields, &j->desc, &k) || !r->t->bodies.orienting ||
+            (j->desc.motor != DEM_MOTOR_NONE && demi_joint_rows(j->desc.kind) != 5) ||
+            j->desc.wall.id < 0 || (j->desc.wall.id &&
+             demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
+            j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
+            !demi_finite_double(j->bank) || !demi_finite_double(j->held) ||
+            !demi_finite(j->left) || !demi_finite(j->apart) ||
+            !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
+            !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
+            !demi_finite(o->power) || !demi_finite(o->motor_torque) ||
+            !demi_finite_double(o->turned) || !demi_finite_double(o->work))
+            return demi_lie(r, "joint", i);
+    }
+    return 1;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -29701,13 +29777,13 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
         int looked = 0;                         /* 1: look() was called */
         demi_region g;
         while (w->clock.time >= d->start && w->clock.steps >= f->again && demi_feed_left(f)) {
-            const double rounded = 1e-9*(1 + due);           /* at 3/s, 3 are due at 1 s */
             int done;
             if (f->next < 0) {
                 const uint64_t random = f->random;
+                double one = 1, fed = (double)f->state.total;          /* grains or kg */
                 demi_feed_draw(w, f);
-                if (d->by_mass ? f->state.mass + f->drawn.mass > due + rounded
-                    : (double)f->state.total + 1 > due + rounded) {
+                if (d->by_mass) { one = f->drawn.mass; fed = f->state.mass; }
+                if (fed + one > due + 1e-9*(one + due)) {    /* at 3/s, 3 are due at 1 s */
                     f->random = random;         /* not due yet: the same draw is repeated later */
                     f->next = -1;
                     break;
@@ -29939,6 +30015,41 @@ DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
     memset(&o->state, 0, sizeof o->state);
     o->state.since = w->clock.time;
     return DEM_OK;
+}
+/* Feeds in a step, see >>features. */
+static int demi_feeds_on(const dem_world *h) { return h->feed_count > 0; }
+static dem_result demi_feeds_ready(dem_world *h) {
+    return h->team ? h->team->feed(h) : demi_world_feed(h);
+}
+/* States of feeds and outlets in a checkpoint. A feed with limits cannot have fed more grains than
+   its desc allows. */
+static void demi_feeds_visit(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->feed_count; i++) {
+        demi_feed *f = demi_feed_at(w, i);
+        demi_visit(s, &f->state, sizeof f->state);
+        demi_visit(s, &f->random, sizeof f->random);
+        demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, &f->drawn, sizeof f->drawn);
+        demi_visit(s, &f->again, sizeof f->again);
+    }
+}
+static int demi_feeds_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(r->t, i);
+        if (f->next < -1 || f->next >= f->desc.class_count || !demi_sane(f->state.mass, 0))
+            return demi_lie(r, "state of feed", i);
+        for (k = 0; k < f->desc.class_count; k++)
+            if (f->desc.limited && f->state.fed[k] > f->limit[k])
+                return demi_lie(r, "state of feed", i);
+    }
+    return 1;
+}
+static void demi_outlets_visit(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->outlet_count; i++)
+        demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -30257,6 +30368,7 @@ DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_s
     *servo = demi_servo_now(world, i);
     return DEM_OK;
 }
+static int demi_servos_on(const dem_world *h) { (void)h; return 1; }
 
 /* ---------------------------------------------------------------------------------------------
    >>rails
@@ -30652,6 +30764,38 @@ DEM_API dem_result dem_body_reaction_get(const dem_world *w, dem_body body, dem_
     *state = r->state;
     return DEM_OK;
 }
+static int demi_rails_on(const dem_world *w) { return w->rail_count > 0; }
+/* --- rails in a checkpoint, see >>features. They are state, as joints are. --- */
+
+static void demi_rails_visit(dem_world *w, demi_stream *s) {
+    if (w->rail_count) demi_visit(s, w->rails, (size_t)w->rail_count*sizeof(demi_rail));
+}
+static int demi_rails_grow(dem_world *t) {
+    return DEMI_GROW(t, t->rails, (size_t)t->rail_count);
+}
+static int demi_rails_counts(const demi_reader *r) {
+    const dem_world *t = r->t, *w = r->w;
+    if (!demi_left(r, t->rail_count, sizeof(demi_rail)) ||
+        (t->rail_count && !demi_response_is(w, DEMI_LASTING)))
+        return demi_lie(r, "number of rails", -1);
+    return 1;
+}
+/* Checks rails: bodies must be slots, walls must exist, and numbers must be finite. */
+static int demi_rails_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->rail_count; i++) {
+        const demi_rail *a = &r->t->rails[i];
+        if (demi_rows_bad(r->w, demi_rail_fields, &a->state.desc, &k) || a->body.slot < 1 ||
+            a->body.slot > (uint32_t)r->t->bodies.slot_count ||
+            a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
+             demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
+            !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
+            !demi_place(a->turn) || !demi_place(a->at) || !demi_place(a->seen) ||
+            !demi_place(a->on))
+            return demi_lie(r, "rail", i);
+    }
+    return 1;
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>growth
@@ -30771,6 +30915,7 @@ static dem_result demi_radii_grow(dem_world *h) {
     if (grown > 2) demi_dt_outdated(h);
     return DEM_OK;
 }
+static int demi_growth_on(const dem_world *h) { return h->desc.growth != 0; }
 
 /* ---------------------------------------------------------------------------------------------
    >>advice
@@ -32284,6 +32429,7 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     s->coordination /= DEMI_MAX(w->bodies.count, 1);
     return DEM_OK;
 }
+static int demi_cell_on(const dem_world *h) { return h->cell.on; }
 
 /* ---------------------------------------------------------------------------------------------
    >>fields
@@ -32716,6 +32862,27 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     }
     out->coordination = d.grains[c] > 0 ? d.contacts[c]/d.grains[c] : 0;
     return DEM_OK;
+}
+/* Sampling in a step, see >>features. */
+static int demi_fields_on(const dem_world *h) { return demi_member(h, 0)->field_count > 0; }
+static dem_result demi_member_sample(dem_world *w) { demi_fields_sample(w); return DEM_OK; }
+static dem_result demi_fields_ended(dem_world *h) { return demi_all(h, demi_member_sample); }
+/* Sums of fields in a checkpoint. */
+static void demi_fields_visit(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &w->fields[i];
+        demi_visit(s, &f->samples, sizeof f->samples);
+        demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, f->sums, demi_field_reals(f)*sizeof(double));
+    }
+}
+static int demi_fields_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->field_count; i++)
+        if (!demi_finite_double(r->t->fields[i].next))
+            return demi_lie(r, "next sampling time of field", i);
+    return 1;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -33364,6 +33531,179 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
     demi_free(w, all);
     return n;
 }
+/* Recording in a step, see >>features. */
+static int demi_events_on(const dem_world *h) { return h->events.n.on; }
+static dem_result demi_events_ready(dem_world *h) {
+    return demi_events_room(h) ? DEM_OK : demi_no_memory(h, "dem_world_step");
+}
+static dem_result demi_events_taken(dem_world *h) { demi_events_take(h); return DEM_OK; }
+/* --- the recording in a checkpoint, see >>features --- */
+
+static void demi_events_visit(dem_world *w, demi_stream *s) {
+    demi_events *e = &w->events;
+    demi_visit(s, e->open, (size_t)e->n.open*sizeof *e->open);
+    demi_visit(s, e->sums, (size_t)e->n.open*sizeof *e->sums);
+    demi_visit(s, e->pending, (size_t)e->n.pending*sizeof *e->pending);
+    demi_visit(s, e->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
+    demi_visit(s, e->walls, (size_t)e->n.walls*sizeof *e->walls);
+    demi_visit(s, e->facets, (size_t)e->n.facets*sizeof *e->facets);
+}
+static int demi_events_counts(const demi_reader *r) {
+    const dem_world *t = r->t, *w = r->w;
+    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open,
+                                             sizeof(demi_ongoing) + sizeof(demi_sums)) ||
+        !demi_left(r, t->events.n.pending, sizeof(dem_event)) ||
+        !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
+        !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||
+        !demi_left(r, t->events.n.facets, sizeof(double)) ||
+        (!t->events.n.on && (t->events.n.open || t->events.n.pending || t->events.n.pairs ||
+                             t->events.n.walls || t->events.n.facets)) ||
+        t->events.n.open > INT_MAX/4 || t->events.n.walls > t->wall_count ||
+        !demi_finite_double(t->events.n.since) || (t->events.n.on && !w->desc.ledger))
+        return demi_lie(r, "number of contact events", -1);
+    return 1;
+}
+/* True if the ids of an event are possible and its numbers finite. */
+static int demi_event_sane(const dem_world *t, const dem_event *e) {
+    const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
+        e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
+    return demi_finite_double(sum) && demi_finite3(e->point) && demi_finite3(e->normal) &&
+        e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
+        (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
+        (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
+        e->material_a.id >= 1 && e->material_a.id <= t->material_count &&
+        e->material_b.id >= 1 && e->material_b.id <= t->material_count;
+}
+/* Checks the recording of contacts: ids, materials and numbers of facets must be possible. */
+static int demi_events_check(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const demi_events *e = &t->events;
+    double sum;
+    int i, k;
+    for (i = 0; i < e->n.open; i++) {
+        const demi_ongoing *o = &e->open[i];
+        const demi_sums *s = &e->sums[i];
+        sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
+            s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
+        if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
+            (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
+            return demi_lie(r, "contact event", i);
+    }
+    for (i = 0; i < e->n.pending; i++)
+        if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
+    for (i = 0; i < e->n.pairs; i++) {
+        const demi_impacts *p = &e->pairs[i];
+        sum = p->ended + p->lost[0] + p->lost[1] + p->lost[2] + p->lost[3];
+        for (k = 0; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k] + p->energy[k];
+        if (p->a < 0 || p->b < p->a || p->b >= t->material_count || !demi_finite_double(sum))
+            return demi_lie(r, "spectrum", i);
+    }
+    for (i = 0, sum = 0; i < e->n.facets; i++) sum += e->facets[i];
+    if (!demi_finite_double(sum)) return demi_lie(r, "wear of facets", -1);
+    for (i = 0; i < e->n.walls; i++)
+        if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
+            e->walls[i].first < 0 || e->walls[i].count < 0 ||
+            e->walls[i].count > e->n.facets - e->walls[i].first ||
+            (e->walls[i].id == t->walls[i].id && t->walls[i].kind != DEMI_WALL_NONE &&
+             e->walls[i].count && e->walls[i].count != t->walls[i].element_count))
+            return demi_lie(r, "wear of wall", i);
+    return 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>features
+   What optional features add to a step and to a checkpoint: a row of functions for each, null where
+   it adds nothing. A step (>>step) runs its phases over all rows that are on, in this order; the
+   checkpoint runs its own over all rows. Neither knows a feature by name. h is the head of a team
+   or a single world; w is a member.
+   --------------------------------------------------------------------------------------------- */
+typedef struct demi_feature {
+    const char *name;
+    int (*on)(const dem_world *h);
+    dem_result (*ready)(dem_world *h);          /* before a step: bodies may come, go or change; the
+                                                   time step is then settled again */
+    dem_result (*lead)(dem_world *h);           /* before bodies move: speeds are chosen */
+    void (*moved)(dem_world *w);                /* bodies have moved, time has not passed */
+    dem_result (*found)(dem_world *h);          /* contacts are found, forces are computed next */
+    dem_result (*answered)(dem_world *h);       /* forces are computed */
+    void (*acted)(dem_world *w);                /* forces on bodies are summed; may change them */
+    dem_result (*ended)(dem_world *h);          /* the step is complete */
+    /* a checkpoint; t: the world that is read */
+    void (*visit)(dem_world *w, demi_stream *s);        /* writes or reads the state */
+    int (*counts)(const demi_reader *r);        /* 0 with a message: an impossible count */
+    int (*room)(dem_world *t);                  /* allocates; 0: memory ran out */
+    int (*sane)(const demi_reader *r);          /* 0 with a message: an impossible value */
+    void (*resumed)(dem_world *t);              /* computes what follows from the state */
+} demi_feature;
+#ifdef DEM_NO_IMPULSES
+#define DEMI_JOINTS_FEATURE
+#else
+#define DEMI_JOINTS_FEATURE \
+    {"joints", demi_never_on,  0, 0, 0, 0, 0, 0, 0, \
+     demi_joints_visit, 0, demi_joints_grow, demi_joints_check, 0},
+#endif
+static int demi_never_on(const dem_world *h) { (void)h; return 0; }
+static const demi_feature demi_features[] = {
+    DEMI_JOINTS_FEATURE
+    {"feeds",  demi_feeds_on,  demi_feeds_ready, 0, 0, 0, 0, 0, 0,
+     demi_feeds_visit, 0, 0, demi_feeds_check, 0},
+    {"outlets", demi_never_on, 0, 0, 0, 0, 0, 0, 0,
+     demi_outlets_visit, 0, 0, 0, 0},
+    {"growth", demi_growth_on, demi_radii_grow, 0, 0, 0, 0, 0, 0,
+     0, 0, 0, 0, 0},
+    {"servo",  demi_servos_on, 0, demi_servos_lead, 0, 0, 0, 0, 0,
+     0, 0, 0, 0, 0},
+    {"rails",  demi_rails_on,  0, 0, demi_rails_move, 0, 0, demi_rails_act, 0,
+     demi_rails_visit, demi_rails_counts, demi_rails_grow, demi_rails_check, 0},
+    {"cell",   demi_cell_on,   0, demi_cell_lead, demi_cell_move, 0, 0, 0, 0,
+     0, 0, 0, 0, 0},
+    {"events", demi_events_on, 0, 0, 0, demi_events_ready, demi_events_taken, 0, 0,
+     demi_events_visit, demi_events_counts, demi_events_reserve, demi_events_check,
+     demi_events_index},
+    {"fields", demi_fields_on, 0, 0, 0, 0, 0, 0, demi_fields_ended,
+     demi_fields_visit, 0, 0, demi_fields_check, 0}};
+enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
+/* Runs a phase of all rows that are on, until one fails; that of member phases cannot fail. */
+#define DEMI_PHASE(h, result, phase) \
+    { \
+        int row; \
+        for (row = 0; row < DEMI_FEATURES && result == DEM_OK; row++) \
+            if (demi_features[row].phase && demi_features[row].on(h)) \
+                result = demi_features[row].phase(h); \
+    }
+#define DEMI_MEMBER_PHASE(w, phase) \
+    { \
+        int row; \
+        for (row = 0; row < DEMI_FEATURES; row++) \
+            if (demi_features[row].phase && demi_features[row].on(w)) demi_features[row].phase(w); \
+    }
+/* Calls the function of a column of all rows that have one. */
+#define DEMI_ALL_FEATURES(column, arguments) \
+    { \
+        int row; \
+        for (row = 0; row < DEMI_FEATURES; row++) \
+            if (demi_features[row].column) demi_features[row].column arguments; \
+    }
+/* Checks a checkpoint being read: its counts, later its values. Returns 0 with an error message. */
+static int demi_features_counts(const demi_reader *r) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].counts) ok = demi_features[row].counts(r);
+    return ok;
+}
+static int demi_features_sane(const demi_reader *r) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].sane) ok = demi_features[row].sane(r);
+    return ok;
+}
+/* Allocates for what will be read. Returns 0 if memory ran out. */
+static int demi_features_room(dem_world *t) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].room) ok = demi_features[row].room(t);
+    return ok;
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>step
@@ -33781,8 +34121,7 @@ static dem_result demi_step_move(dem_world *w) {
     w->clock.half_kick = (double)w->clock.dt/2;
     demi_domains_do(w, demi_domain_move);
     w->stage.synced = demi_response_is(w, DEMI_MIDWAY);
-    demi_rails_move(w);
-    if (w->cell.on) demi_cell_move(w);
+    DEMI_MEMBER_PHASE(w, moved)
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -33922,7 +34261,7 @@ static dem_result demi_member_forces(dem_world *w) {
    user-defined functions returned impossible numbers, or an overlap has reached the radius. */
 static dem_result demi_member_end(dem_world *w) {
     int d;
-    demi_rails_act(w);
+    DEMI_MEMBER_PHASE(w, acted)
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
@@ -33933,7 +34272,6 @@ static dem_result demi_member_prime(dem_world *w) {
     demi_prime(w);
     return DEM_OK;
 }
-static dem_result demi_member_sample(dem_world *w) { demi_fields_sample(w); return DEM_OK; }
 /* Run before and after forces are computed without a step. forces_valid = 0 makes contact histories
    stay as they are. */
 static dem_result demi_member_look(dem_world *w) {
@@ -33943,7 +34281,7 @@ static dem_result demi_member_look(dem_world *w) {
 }
 static dem_result demi_member_looked(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
-    demi_rails_act(w);
+    DEMI_MEMBER_PHASE(w, acted)
     w->stage.forces_valid = 1;
     return DEM_OK;
 }
@@ -34043,11 +34381,10 @@ static dem_result demi_all_forces(dem_world *h, int near) {
     if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);
     if (result == DEM_OK) result = demi_all(h, demi_member_touch);
     if (result == DEM_OK && demi_member(h, 0)->bodies.orienting) result = demi_agree(h, 0, 0);
-    if (result == DEM_OK && h->events.n.on && !demi_events_room(h))
-        result = demi_no_memory(h, "dem_world_step");
+    DEMI_PHASE(h, result, found)
     if (result == DEM_OK) result = demi_all(h, demi_member_forces);
     if (result == DEM_OK && h->team) result = h->team->give(h, &demi_pushes);
-    if (result == DEM_OK && h->events.n.on) demi_events_take(h);
+    DEMI_PHASE(h, result, answered)
     return result;
 }
 /* Fails after a step with an overlap above desc.overlap_stop. */
@@ -34133,10 +34470,9 @@ static dem_result demi_member_gain(dem_world *w) {
 }
 /* Performs one step, or the rest of a step that ran out of memory after its move. */
 static dem_result demi_step_once(dem_world *h) {
-    dem_result result;
+    dem_result result = DEM_OK;
     if (!h->stage.moved) {
-        result = demi_servos_lead(h);
-        if (result == DEM_OK && h->cell.on) result = demi_cell_lead(h);
+        DEMI_PHASE(h, result, lead)
         if (result == DEM_OK) result = demi_all(h, demi_member_move);
         if (result == DEM_OK) result = demi_moved(h);
         if (result != DEM_OK) return result;
@@ -34202,17 +34538,15 @@ static dem_result demi_look(dem_world *w) {
     if (w->look.films_look) w->look.films_look(w);
     return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
 }
-/* Prepares a step: settles the time step, inserts grains of feeds, changes radii, computes the
-   forces of a scene that has changed, checks the time step against the present contacts, and sets
-   half-step velocities. */
+/* Prepares a step: settles the time step, again after each feature that may change bodies, computes
+   the forces of a scene that has changed, checks the time step against the present contacts, and
+   sets half-step velocities. */
 static dem_result demi_step_ready(dem_world *h) {
     dem_result result = demi_dt_settle(h);
-    if (result == DEM_OK && h->feed_count) {
-        result = h->team ? h->team->feed(h) : demi_world_feed(h);
-        if (result == DEM_OK) result = demi_dt_settle(h);   /* there may be new grains */
-    }
-    if (result == DEM_OK && h->desc.growth) {
-        result = demi_radii_grow(h);
+    int k;
+    for (k = 0; k < DEMI_FEATURES && result == DEM_OK; k++) {
+        if (!demi_features[k].ready || !demi_features[k].on(h)) continue;
+        result = demi_features[k].ready(h);
         if (result == DEM_OK) result = demi_dt_settle(h);
     }
     if (result == DEM_OK && (!h->stage.forces_valid || h->stage.pairs_changed))
@@ -34242,8 +34576,7 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
         if (result == DEM_OK) {
             result = demi_step_once(h);
             demi_crew_end(h);
-            if (result == DEM_OK && demi_member(h, 0)->field_count)
-                result = demi_all(h, demi_member_sample);
+            DEMI_PHASE(h, result, ended)
         }
         demi_called(h, was);
         if (result == DEM_OK) result = demi_events_tell(h, call);
@@ -39001,8 +39334,8 @@ DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
    A file consists of
        head      magic, version, size of dem_real, byte order, digest of the layout, sizes, counts
        scene     the fields of desc, materials, pairs, shapes, walls, fields, feeds, outlets
-       state     numbers, domains, bodies, joints, neighbour lists, contacts, walls, fields, feeds,
-                 outlets, outputs
+       state     numbers, domains, bodies, neighbour lists, contacts, walls, features (>>features),
+                 outputs
        checksum  of everything before it
 
    Some values are computed when the candidate list is built: the laws in force, the length of the
@@ -39012,7 +39345,7 @@ DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 26 };
+enum { DEMI_CHECKPOINT_VERSION = 27 };
 
 /* --- the state, visited in the order in which it is checked --- */
 
@@ -39147,50 +39480,11 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         for (; r->how & DEMI_LIMITS; r++) demi_visit(s, (char *)&wall->motion + r->offset, r->size);
     }
 }
-/* Visits the sums of fields and the states of feeds and outlets. */
-static void demi_visit_measured(dem_world *w, demi_stream *s) {
-    int i;
-    for (i = 0; i < w->field_count; i++) {
-        demi_field *f = &w->fields[i];
-        demi_visit(s, &f->samples, sizeof f->samples);
-        demi_visit(s, &f->next, sizeof f->next);
-        demi_visit(s, f->sums, demi_field_reals(f)*sizeof(double));
-    }
-    for (i = 0; i < w->feed_count; i++) {
-        demi_feed *f = demi_feed_at(w, i);
-        demi_visit(s, &f->state, sizeof f->state);
-        demi_visit(s, &f->random, sizeof f->random);
-        demi_visit(s, &f->next, sizeof f->next);
-        demi_visit(s, &f->drawn, sizeof f->drawn);
-        demi_visit(s, &f->again, sizeof f->again);
-    }
-    for (i = 0; i < w->outlet_count; i++)
-        demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
-}
-/* Visits joints. They are state and not scene, because they appear and disappear with bodies. */
-static void demi_visit_joints(dem_world *w, demi_stream *s) {
-    if (w->joint_count)
-        demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
-}
-/* Visits rails, which are state for the same reason. */
-static void demi_visit_rails(dem_world *w, demi_stream *s) {
-    if (w->rail_count) demi_visit(s, w->rails, (size_t)w->rail_count*sizeof(demi_rail));
-}
 /* Visits the records of what outputs have written. */
 static void demi_visit_outputs(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->written_count; i++)
         demi_visit(s, s->from ? &w->written[i] : &w->look.outputs[i].written, sizeof *w->written);
-}
-/* Visits the recording of contacts. */
-static void demi_visit_events(dem_world *w, demi_stream *s) {
-    demi_events *e = &w->events;
-    demi_visit(s, e->open, (size_t)e->n.open*sizeof *e->open);
-    demi_visit(s, e->sums, (size_t)e->n.open*sizeof *e->sums);
-    demi_visit(s, e->pending, (size_t)e->n.pending*sizeof *e->pending);
-    demi_visit(s, e->pairs, (size_t)e->n.pairs*sizeof *e->pairs);
-    demi_visit(s, e->walls, (size_t)e->n.walls*sizeof *e->walls);
-    demi_visit(s, e->facets, (size_t)e->n.facets*sizeof *e->facets);
 }
 /* Visits the whole state. demi_twin_read reads it in the same order. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
@@ -39202,14 +39496,11 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     }
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
-    demi_visit_joints(w, s);
-    demi_visit_rails(w, s);
     demi_visit_lists(w, s);
     demi_visit_contacts(w, s);
     demi_visit_walls(w, s);
-    demi_visit_measured(w, s);
+    DEMI_ALL_FEATURES(visit, (w, s))
     demi_visit_outputs(w, s);
-    demi_visit_events(w, s);
 }
 
 /* --- writing --- */
@@ -39518,30 +39809,6 @@ static void demi_twin_adopt(dem_world *w, dem_world *t) {
 /* --- reading: are the values possible? Each of these functions checks one part of the twin, right
        after it was read, and returns 0 with an error message if a value is not possible --- */
 
-/* A checkpoint being read. */
-typedef struct demi_reader {
-    dem_world *w, *t;              /* the world; its twin */
-    const char *path;
-    demi_stream s;                 /* what is left of the file */
-} demi_reader;
-
-/* Fails with the message that a value is impossible although the checksum is correct. which: the
-   index of its item, or -1. Returns 0. */
-static int demi_lie(const demi_reader *r, const char *what, long long which) {
-    char number[32] = "";
-    if (which >= 0) demi_words(number, sizeof number, " %lld", which + 1);
-    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: invalid %s%s, although the "
-              "checksum is correct; the file was altered, or the run that wrote it had blown up: "
-              "use an older checkpoint", r->path, what, number);
-    return 0;
-}
-/* True if the rest of the file can hold so many items of `size` bytes. */
-static int demi_left(const demi_reader *r, int64_t count, size_t size) {
-    return count >= 0 && (uint64_t)count <= r->s.left/size;
-}
-/* True if x is finite and at least `least`. */
-static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }
-
 /* Checks the numbers that are not in arrays. Counts come first: they determine what is allocated
    and read next. */
 static int demi_numbers_check(const demi_reader *r) {
@@ -39565,22 +39832,9 @@ static int demi_numbers_check(const demi_reader *r) {
     if (!demi_left(r, t->joint_count, sizeof(demi_joint)) ||
         (t->joint_count && !demi_response_is(w, DEMI_JOINTED)))
         return demi_lie(r, "number of joints", -1);
-    if (!demi_left(r, t->rail_count, sizeof(demi_rail)) ||
-        (t->rail_count && !demi_response_is(w, DEMI_LASTING)))
-        return demi_lie(r, "number of rails", -1);
+    if (!demi_features_counts(r)) return 0;
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
         return demi_lie(r, "number of outputs", -1);
-    if ((t->events.n.on & ~1) || !demi_left(r, t->events.n.open,
-                                             sizeof(demi_ongoing) + sizeof(demi_sums)) ||
-        !demi_left(r, t->events.n.pending, sizeof(dem_event)) ||
-        !demi_left(r, t->events.n.pairs, sizeof(demi_impacts)) ||
-        !demi_left(r, t->events.n.walls, sizeof(demi_worn)) ||
-        !demi_left(r, t->events.n.facets, sizeof(double)) ||
-        (!t->events.n.on && (t->events.n.open || t->events.n.pending || t->events.n.pairs ||
-                             t->events.n.walls || t->events.n.facets)) ||
-        t->events.n.open > INT_MAX/4 || t->events.n.walls > t->wall_count ||
-        !demi_finite_double(t->events.n.since) || (t->events.n.on && !w->desc.ledger))
-        return demi_lie(r, "number of contact events", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
@@ -39845,9 +40099,8 @@ static int demi_walls_check(const demi_reader *r) {
     }
     return 1;
 }
-/* Checks ages, averages, fields and feeds. A feed with limits cannot have fed more grains than its
-   desc allows. */
-static int demi_measured_check(const demi_reader *r) {
+/* Checks ages and averages. */
+static int demi_ages_check(const demi_reader *r) {
     const demi_bodies *b = &r->t->bodies;
     int i, k;
     for (i = 0; i < b->count; i++) {
@@ -39856,61 +40109,7 @@ static int demi_measured_check(const demi_reader *r) {
         if (!demi_finite_double(sum) || (b->averaged && !(b->means[DEMI_MEANS*i] >= 0 &&
             b->means[DEMI_MEANS*i] < 9e15))) return demi_lie(r, "age or averages of body", i);
     }
-    for (i = 0; i < r->t->field_count; i++)
-        if (!demi_finite_double(r->t->fields[i].next))
-            return demi_lie(r, "next sampling time of field", i);
-    for (i = 0; i < r->t->feed_count; i++) {
-        const demi_feed *f = demi_feed_at(r->t, i);
-        if (f->next < -1 || f->next >= f->desc.class_count || !demi_sane(f->state.mass, 0))
-            return demi_lie(r, "state of feed", i);
-        for (k = 0; k < f->desc.class_count; k++)
-            if (f->desc.limited && f->state.fed[k] > f->limit[k])
-                return demi_lie(r, "state of feed", i);
-    }
     return 1;
-}
-
-/* Checks rails: bodies must be slots, walls must exist, and numbers must be finite. */
-static int demi_rails_check(const demi_reader *r) {
-    int i, k;
-    for (i = 0; i < r->t->rail_count; i++) {
-        const demi_rail *a = &r->t->rails[i];
-        if (demi_rows_bad(r->w, demi_rail_fields, &a->state.desc, &k) || a->body.slot < 1 ||
-            a->body.slot > (uint32_t)r->t->bodies.slot_count ||
-            a->state.desc.wall.id < 0 || (a->state.desc.wall.id &&
-             demi_wall_place(a->state.desc.wall) >= r->t->wall_count) ||
-            !demi_finite_double(a->state.work) || !demi_quat_finite(a->start) ||
-            !demi_place(a->turn) || !demi_place(a->at) || !demi_place(a->seen) ||
-            !demi_place(a->on))
-            return demi_lie(r, "rail", i);
-    }
-    return 1;
-}
-/* Checks joints: kinds and walls must exist, and numbers must be finite. Bodies need no check: the
-   id of a body that no longer exists names nothing. */
-static int demi_joints_check(const demi_reader *r) {
-#ifdef DEM_NO_IMPULSES
-    return !r->t->joint_count || demi_lie(r, "joint", 0);
-#else
-    int i, k;
-    for (i = 0; i < r->t->joint_count; i++) {
-        const demi_joint *j = &r->t->joints[i];
-        const dem_joint_state *o = &j->state;
-        if (demi_rows_bad(r->w, demi_joint_fields, &j->desc, &k) || !r->t->bodies.orienting ||
-            (j->desc.motor != DEM_MOTOR_NONE && demi_joint_rows(j->desc.kind) != 5) ||
-            j->desc.wall.id < 0 || (j->desc.wall.id &&
-             demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
-            j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
-            !demi_finite_double(j->bank) || !demi_finite_double(j->held) ||
-            !demi_finite(j->left) || !demi_finite(j->apart) ||
-            !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
-            !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
-            !demi_finite(o->power) || !demi_finite(o->motor_torque) ||
-            !demi_finite_double(o->turned) || !demi_finite_double(o->work))
-            return demi_lie(r, "joint", i);
-    }
-    return 1;
-#endif
 }
 
 /* Checks the records of outputs: numbers must be within their range and times finite. */
@@ -39921,53 +40120,6 @@ static int demi_outputs_check(const demi_reader *r) {
         if (o->next < DEMI_OUTPUT_UNKNOWN || (double)o->next > DEMI_OUTPUT_MOST ||
             !demi_finite_double(o->last)) return demi_lie(r, "state of output", i);
     }
-    return 1;
-}
-
-/* True if the ids of an event are possible and its numbers finite. */
-static int demi_event_sane(const dem_world *t, const dem_event *e) {
-    const double sum = e->begin + e->end + e->closing_speed + e->slip_speed + e->mass + e->force +
-        e->impulse + e->lost_normal + e->lost_slide + e->lost_tangent + e->lost_rolling;
-    return demi_finite_double(sum) && demi_finite3(e->point) && demi_finite3(e->normal) &&
-        e->a.slot >= 1 && e->a.slot <= (uint32_t)t->bodies.slot_count &&
-        (e->wall ? e->wall > 0 : e->b.slot >= 1 && e->b.slot <= (uint32_t)t->bodies.slot_count) &&
-        (!e->wall || (e->wall - 1)%DEMI_WALLS_MOST < t->wall_count) &&
-        e->material_a.id >= 1 && e->material_a.id <= t->material_count &&
-        e->material_b.id >= 1 && e->material_b.id <= t->material_count;
-}
-/* Checks the recording of contacts: ids, materials and numbers of facets must be possible. */
-static int demi_events_check(const demi_reader *r) {
-    const dem_world *t = r->t;
-    const demi_events *e = &t->events;
-    double sum;
-    int i, k;
-    for (i = 0; i < e->n.open; i++) {
-        const demi_ongoing *o = &e->open[i];
-        const demi_sums *s = &e->sums[i];
-        sum = s->normal + s->slide + s->rolling + s->work + s->impulse + s->stored +
-            s->force + s->most + o->due[0] + o->due[1] + o->due[2] + o->due[3];
-        if (!demi_event_sane(t, &o->event) || o->facet < 0 || !demi_finite_double(sum) ||
-            (o->event.wall && (o->event.wall - 1)%DEMI_WALLS_MOST >= e->n.walls))
-            return demi_lie(r, "contact event", i);
-    }
-    for (i = 0; i < e->n.pending; i++)
-        if (!demi_event_sane(t, &e->pending[i])) return demi_lie(r, "contact that has ended", i);
-    for (i = 0; i < e->n.pairs; i++) {
-        const demi_impacts *p = &e->pairs[i];
-        sum = p->ended + p->lost[0] + p->lost[1] + p->lost[2] + p->lost[3];
-        for (k = 0; k < DEM_IMPACT_BINS; k++) sum += p->impacts[k] + p->losses[k] + p->energy[k];
-        if (p->a < 0 || p->b < p->a || p->b >= t->material_count || !demi_finite_double(sum))
-            return demi_lie(r, "spectrum", i);
-    }
-    for (i = 0, sum = 0; i < e->n.facets; i++) sum += e->facets[i];
-    if (!demi_finite_double(sum)) return demi_lie(r, "wear of facets", -1);
-    for (i = 0; i < e->n.walls; i++)
-        if (!demi_finite_double(e->walls[i].slide + e->walls[i].normal) ||
-            e->walls[i].first < 0 || e->walls[i].count < 0 ||
-            e->walls[i].count > e->n.facets - e->walls[i].first ||
-            (e->walls[i].id == t->walls[i].id && t->walls[i].kind != DEMI_WALL_NONE &&
-             e->walls[i].count && e->walls[i].count != t->walls[i].element_count))
-            return demi_lie(r, "wear of wall", i);
     return 1;
 }
 
@@ -40083,25 +40235,19 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!demi_domains_check(r)) return DEM_ERROR_FORMAT;
     *seen = (unsigned char *)demi_alloc(t, (size_t)t->bodies.slot_count + 1, 1);
     if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
-        !DEMI_GROW(t, t->joints, (size_t)t->joint_count) ||
-        !DEMI_GROW(t, t->rails, (size_t)t->rail_count) ||
-        !DEMI_GROW(t, t->written, (size_t)t->written_count) || !demi_events_reserve(t))
+        !demi_features_room(t) || !DEMI_GROW(t, t->written, (size_t)t->written_count))
         return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
-    demi_visit_joints(t, s);
-    demi_visit_rails(t, s);
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
     demi_visit_lists(t, s);
     demi_visit_contacts(t, s);
     demi_visit_walls(t, s);
-    demi_visit_measured(t, s);
+    DEMI_ALL_FEATURES(visit, (t, s))
     demi_visit_outputs(t, s);
-    demi_visit_events(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
-    if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
-        !demi_joints_check(r) || !demi_rails_check(r) || !demi_outputs_check(r) ||
-        !demi_events_check(r)) return DEM_ERROR_FORMAT;
-    demi_events_index(t);
+    if (s->cut || s->left || !demi_walls_check(r) || !demi_ages_check(r) ||
+        !demi_features_sane(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+    DEMI_ALL_FEATURES(resumed, (t))
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
     if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))
         return DEM_ERROR_MEMORY;

@@ -528,7 +528,7 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_visit_outputs(t, s);
     if (s->cut || s->left) demi_lie(r, "length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_ages_check(r) ||
-        !demi_features_values(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
+        !demi_features_sane(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
     DEMI_ALL_FEATURES(resumed, (t))
     if (!t->facets_valid && !demi_surfaces_make(t)) return DEM_ERROR_MEMORY;
     if (t->stage.list_valid && (t->bodies.shaped || t->effects.clustered) && !demi_centres_lay(t))

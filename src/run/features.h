@@ -20,7 +20,7 @@ typedef struct demi_feature {
     void (*visit)(dem_world *w, demi_stream *s);        /* writes or reads the state */
     int (*counts)(const demi_reader *r);        /* 0 with a message: an impossible count */
     int (*room)(dem_world *t);                  /* allocates; 0: memory ran out */
-    int (*values)(const demi_reader *r);        /* 0 with a message: an impossible value */
+    int (*sane)(const demi_reader *r);          /* 0 with a message: an impossible value */
     void (*resumed)(dem_world *t);              /* computes what follows from the state */
 } demi_feature;
 #ifdef DEM_NO_IMPULSES
@@ -72,17 +72,17 @@ enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
         for (row = 0; row < DEMI_FEATURES; row++) \
             if (demi_features[row].column) demi_features[row].column arguments; \
     }
-/* Checks a checkpoint being read: counts, later values. Returns 0 with an error message. */
+/* Checks a checkpoint being read: its counts, later its values. Returns 0 with an error message. */
 static int demi_features_counts(const demi_reader *r) {
     int row, ok = 1;
     for (row = 0; row < DEMI_FEATURES && ok; row++)
         if (demi_features[row].counts) ok = demi_features[row].counts(r);
     return ok;
 }
-static int demi_features_values(const demi_reader *r) {
+static int demi_features_sane(const demi_reader *r) {
     int row, ok = 1;
     for (row = 0; row < DEMI_FEATURES && ok; row++)
-        if (demi_features[row].values) ok = demi_features[row].values(r);
+        if (demi_features[row].sane) ok = demi_features[row].sane(r);
     return ok;
 }
 /* Allocates for what will be read. Returns 0 if memory ran out. */
