@@ -585,7 +585,32 @@ CODE(read_numbers, static void read_numbers(dem_world *w) {
     free(copy);
 })
 
+/* Sets what walls have, and asks for advice: both call functions, which try to change gravity in `meddle`. */
+CODE(meddle, static dem_world *meddled; static void change_gravity(void) {
+    if (meddled) dem_world_gravity_set(meddled, dem_vec3_make(1, 2, 0));
+} static void law_meddling(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    dem_law_hertz(c, memory, f);
+    dem_law_spring(c, memory, f);
+    change_gravity();
+} static int inside_meddling(dem_vec3 centre, dem_real radius, void *user) {
+    (void)centre; (void)radius; (void)user;
+    change_gravity();
+    return 1;
+} static void steer(dem_world *w) {
+    dem_wall wall;
+    dem_vec3 v;
+    for (wall.id = 1; wall.id < 14; wall.id++)
+        if (dem_wall_surface_velocity_get(w, wall, &v) == DEM_OK) dem_wall_surface_velocity_set(w, wall, v);
+    dem_world_check(w, 0, 0);
+    dem_world_error_get(w);
+} static void meddle(dem_world *w) {
+    meddled = w;
+    steer(w);
+    meddled = 0;
+})
 #define REL_SERVICE_CODES \
+    R_(meddle, 0, 1), {"law_meddling", "", (void (*)(void))law_meddling, 0, 1}, \
+    {"inside_meddling", "", (void (*)(void))inside_meddling, 0, 1}, {"steer", "", (void (*)(void))steer, 0, 1}, \
     R_(hear, 1, 1), R_(beat, 1, 1), R_(two_values, 1, 1), R_(shade, 1, 1), R_(read_world, 1, 1), R_(read_counters, \
         1, 1), \
     R_(read_bodies, 1, 1), R_(read_groups, 1, 1), R_(read_materials, 1, 1), R_(read_shapes, 1, 1), R_(read_walls, 1, \

@@ -724,7 +724,8 @@ static const rel_feature rel_features[] = {
     REL_ROWS_LATER, REL_SERVICE_FEATURES,
     {"second motion", 0, 0, 0.4, rel_second_motion, REL_ACTS_WALL}, {"fixed joint", 0, 0, 0.2, rel_joint_fixed, 0},
     {"late average", 0, 0, 0.5, rel_average_late, 0}, {"bar", 0, 0, 0.4, rel_bar, 0},
-    {"pair later", 0, 0, 0.15, rel_pair_later, REL_ACTS_CONTACT}
+    {"pair later", 0, 0, 0.15, rel_pair_later, REL_ACTS_CONTACT},
+    {"sheet", 0, 0, 0.05, rel_sheet, REL_ACTS_WALL}, {"laid cube", 0, 0, 0.4, rel_laid, 0}
 };
 enum { REL_ROWS = (int)(sizeof rel_features/sizeof *rel_features) };
 

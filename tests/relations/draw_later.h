@@ -68,6 +68,57 @@ static int rel_pair_later(rel_draw *d) {
     return 1;
 }
 static int rel_row(const char *name);
+static rel_set *rel_set_of(rel_op *op, const char *name) {
+    int k;
+    for (k = 0; k < op->count; k++) if (op->set[k].field == rel_field_of(op->call, name)) return &op->set[k];
+    return 0;
+}
+/* A sheet between the first two bodies, which are neighbours along x. */
+static int rel_sheet(rel_draw *d) {
+    double v[12], t[6] = {0, 1, 2, 0, 2, 3}, *x, *y;
+    rel_op *m;
+    int i;
+    if (d->planar || d->periodic || d->bodies < 2) return 0;
+    x = rel_set_of(&d->s->op[d->body[0]], "position")->v;
+    y = rel_set_of(&d->s->op[d->body[1]], "position")->v;
+    if (y[1] > x[1] || y[2] > x[2]) return 0;
+    for (i = 0; i < 4; i++) {
+        v[3*i] = (x[0] + y[0])/2;
+        v[3*i + 1] = (i + 1)/2%2 ? 2*d->a : -2*d->a;
+        v[3*i + 2] = i/2 ? 2*d->h : x[2] - 0.5*d->R;
+    }
+    m = rel_add(d, REL_MESH, 0);
+    rel_put(m, "material", rel_stuff(d));
+    rel_list(d, m, "vertices", v, 12);
+    rel_list(d, m, "triangles", t, 6);
+    return 1;
+}
+/* A cube of the lowest row lies on the floor and slides; over the seam, if the floor consists of boxes. */
+static int rel_laid(rel_draw *d) {
+    const double low = rel_set_of(&d->s->op[d->body[0]], "position")->v[2];
+    int i, k, e;
+    for (i = 0; i < d->bodies; i++) {
+        rel_op *b = &d->s->op[d->body[i]];
+        const rel_set *shape = rel_set_of(b, "shape");
+        double *x = rel_set_of(b, "position")->v;
+        if (!shape || d->s->op[(int)shape->v[0]].feature != rel_row("cubes") || x[2] > low) continue;
+        x[2] = 0.5*d->R;
+        if (d->scaled) rel_put(b, "scale", 1);
+        rel_slot(b, "orientation")->v[0] = 1;
+        rel_put3(b, "velocity", rel_vary(d, 0.1, 0.6), rel_vary(d, -0.2, 0.2), 0);
+        rel_slot(b, "spin");
+        for (k = 0; k < 2 && k < d->walls; k++) {
+            rel_op *box = &d->s->op[d->wall[k]];
+            const double at = rel_vary(d, x[0] + 0.8*d->R, x[0] + 0.8*d->R);
+            for (e = 0; e < 24 && box->feature == rel_row("flush boxes"); e += 3) {
+                double *seam = d->s->pool + rel_set_of(box, "vertices")->at + e;
+                if (fabs(*seam) < 1.4*d->a) *seam = at;
+            }
+        }
+        return 1;
+    }
+    return 0;
+}
 /* A round bar between the places of a feed, above all bodies, which does not repeat across the periods. The feed is
    added if there is none. */
 static int rel_bar(rel_draw *d) {

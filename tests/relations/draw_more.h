@@ -211,6 +211,29 @@ static int rel_outflow(rel_draw *d) {          /* a floor without sides; bodies 
     rel_plane_at(d, 0, 0, 0, 0, d->planar ? 1 : 0, d->planar ? 0 : 1);
     return 1;
 }
+/* The floor consists of two closed boxes side by side. */
+static int rel_boxes(rel_draw *d) {
+    static const double face[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4, 1, 2, 6, 1, 6, 5, 2, 3, 7, 2,
+        7, 6, 3, 0, 4, 3, 4, 7};
+    const double a = rel_vary(d, 1.5*d->a, 1.5*d->a), seam = rel_vary(d, -d->a, d->a);     /* few digits */
+    double x[24];
+    int i, k;
+    if (d->planar || d->periodic) return 0;
+    for (k = 0; k < 2; k++) {
+        rel_op *m = rel_add(d, REL_MESH, 0);
+        for (i = 0; i < 8; i++) {
+            x[3*i] = (i + 1)/2%2 ? (k ? a : seam) : k ? seam : -a;
+            x[3*i + 1] = i/2%2 ? a : -a;
+            x[3*i + 2] = i/4 ? 0 : -3e-3;
+        }
+        rel_put(m, "material", rel_stuff(d));
+        rel_list(d, m, "vertices", x, 24);
+        rel_list(d, m, "triangles", face, 36);
+        rel_wall(d, m);
+    }
+    rel_sides(d);
+    return 1;
+}
 static int rel_rod(rel_draw *d) {              /* in the floor, of which grains see the upper side */
     rel_op *c = rel_add(d, REL_CYLINDER, 0);
     rel_put(c, "material", rel_stuff(d));
@@ -569,7 +592,8 @@ static int rel_cell_later(rel_draw *d) {       /* other controls in the middle o
     {"given mass", 33, 0, 0.1, rel_cluster_given, 1}, {"unions of ellipsoids", 0, 0, 0.08, rel_union_balls, 1}, \
     {"unions of polyhedra", 0, 0, 0.08, rel_union_blocks, 1}, \
     {"concave polygons", 0, 0, 0.1, rel_polygon_concave, 1}, {"scaled bodies", 0, 0, 0.05, rel_scaled_bodies, 1},
-#define REL_ROWS_CONTAINERS {"outflow", 19, 1, 0, rel_outflow, REL_ACTS_WALL},
+#define REL_ROWS_CONTAINERS {"outflow", 19, 1, 0, rel_outflow, REL_ACTS_WALL}, \
+    {"flush boxes", 19, 1, 0, rel_boxes, REL_ACTS_WALL},
 #define REL_ROWS_WALLS \
     {"rod", 0, 0, 0.05, rel_rod, REL_ACTS_WALL}, {"fractions of segments", 0, 0, 0.1, rel_fractions, REL_ACTS_WALL}, \
     {"bars", 34, 0, 0.25, rel_sieve_bars, REL_ACTS_WALL}, \

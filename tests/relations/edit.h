@@ -3,12 +3,22 @@
 #define REL_EDIT_H
 #include "relate.h"
 
+/* Is there a function that reads these data? law_user belongs to law and law_rate, body_reals_user to body_reals_fn. */
+static int rel_is_read(const rel_op *op, const char *user) {
+    const size_t n = strlen(user) - (strstr(user, "_user") ? 5 : 4);
+    int j;
+    for (j = 0; j < op->count; j++) {
+        const rel_field *f = &rel_calls[op->call].fields[op->set[j].field];
+        if (f->type == REL_CODE && !strncmp(f->name, user, n)) return 1;
+    }
+    return 0;
+}
 /* Lists, references, the time step, the tolerance that rel_compare knows, the thickness of discs (0 means 1 m in all
    units), what functions read and what relations expect of each body stay. */
 static int rel_needed(const rel_op *op, const rel_field *f) {
     if (f->type >= REL_REF && f->type <= REL_DOUBLE_ARRAY) return 1;
     if (f->type == REL_PATH || op->call == REL_READ) return 1;
-    if (f->type == REL_DATA) return 1;         /* functions read it */
+    if (f->type == REL_DATA) return rel_is_read(op, f->name);
     if (op->call == REL_WORLD)
         return !strcmp(f->name, "d.dt") || !strcmp(f->name, "d.tolerance") ||
             (rel_given_in(op, "planar") && !strcmp(f->name, "d.thickness")) ||
@@ -89,8 +99,11 @@ static rel_op *rel_more(rel_scene *s, int call, int step) {
     op->step = step;
     return op;
 }
+/* Boxes stay closed, because dem.h promises nothing about meshes that are folded or open below a floor. */
+static int rel_is_closed(const rel_op *op) { return op->call == REL_MESH && op->feature == rel_row("flush boxes"); }
 /* How many numbers of a list belong together and can be left out; 0: the list stays. */
 static int rel_group(const rel_op *op, const char *name) {
+    if (rel_is_closed(op)) return 0;
     if (!strcmp(name, "triangles")) return op->call == REL_MESH ? 3 : 2;
     if (!strcmp(name, "points") || (op->call == REL_GRAINS && !strcmp(name, "vertices"))) return 3;
     return strcmp(name, "corners") ? 0 : 2;
@@ -124,8 +137,8 @@ static double rel_rounder(double x, int digits, int down) {
 static double *rel_numbers_of(rel_scene *s, const rel_op *op, rel_set *v, int *count) {
     const rel_type type = rel_calls[op->call].fields[v->field].type;
     const int list = type == REL_REALS || type == REL_REAL_ARRAY || type == REL_DOUBLE_ARRAY;
-    *count = list ? v->count : type == REL_REAL || type == REL_DOUBLE ? 1 : type == REL_VEC ? 3 : type == REL_QUAT ? 4 :
-             type == REL_BOX ? 6 : 0;
+    *count = list ? (rel_is_closed(op) ? 0 : v->count) : type == REL_REAL || type == REL_DOUBLE ? 1 :
+             type == REL_VEC ? 3 : type == REL_QUAT ? 4 : type == REL_BOX ? 6 : 0;
     return list ? s->pool + v->at : v->v;
 }
 #endif

@@ -59,7 +59,7 @@ static void rel_print_head(const rel_program *p, const char *why) {
                 if (rel_calls[s->op[i].call].fields[s->op[i].set[j].field].type == REL_DATA &&
                     (int)s->op[i].set[j].v[0] == k && !n++) rel_line(p->out, 0, rel_data[k].text);
     if (s != p->s) fprintf(p->out, "#define I(a, b) (image ? b : a)\n");
-    if (rel_bodies(s)) fprintf(p->out, "static dem_body b[%d];\n", rel_bodies(s));
+    fprintf(p->out, "static dem_body b[%d];\n", rel_bodies(s) ? rel_bodies(s) : 1);
     for (call = 0; call < REL_CALLS; call++) {
         if (call == REL_A_BODY || !*rel_calls[call].makes) continue;
         rel_new_page(0);

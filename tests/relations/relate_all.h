@@ -29,7 +29,8 @@ static const rel_relation rel_relations[] = {
     REL_SERVICE_RELATIONS,
     {"joints hold", "third order in the first step; no force if fixed", rel_joints},
     {"samples", "one for each interval", rel_samples}, {"outlet", "exact", rel_left},
-    {"slabs made of a world", "same hash and later bits", rel_slabs_beside}, {"whole periods", "rounding", rel_periods}
+    {"slabs made of a world", "same hash and later bits", rel_slabs_beside}, {"whole periods", "rounding", rel_periods},
+    {"changes in functions", "rounding", rel_meddling}, {"motion not begun", "rounding", rel_not_begun}
 };
 enum { REL_RELATIONS = (int)(sizeof rel_relations/sizeof *rel_relations) };
 /* The rows that program.h writes in a way of their own. */
@@ -50,7 +51,7 @@ static int rel_judge(rel_case *c, int relation) {
     c->map = rel_same;
     c->other_ran = c->ran;
     c->repeated = c->reversed = c->bad = 0;
-    c->allowed[0] = c->allowed[1] = 0;
+    c->allowed[0] = c->allowed[1] = c->excess = 0;
     {
         const int result = rel_relations[relation].check(c);
         return result == REL_BROKEN && rel_known_break(c, rel_relations[relation].name) ? REL_KNOWN : result;

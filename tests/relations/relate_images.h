@@ -195,14 +195,15 @@ static int rel_mirrored(rel_case *c) {
 }
 static int rel_translated(rel_case *c) {
     static const char *const without[] = {"outlet beyond", "push inside", "feed inside", 0};
+    const double far = rel_below(&c->rng, 2) ? 16 : 1;     /* walls are not faster there */
     rel_map m = rel_same;
     if (!c->ran || rel_has_any(c, without)) return REL_SKIPPED;
     rel_copy(&rel_own, c->s);
     rel_leave_framed(&rel_own);
     if (!rel_instead(c)) return REL_SKIPPED;
-    m.to[0] = ldexp(1, -6);
-    m.to[1] = -ldexp(1, -7);
-    if (!rel_has(c, "planar")) m.to[2] = ldexp(1, -5);
+    m.to[0] = ldexp(far, -6);
+    m.to[1] = -ldexp(far, -7);
+    if (!rel_has(c, "planar")) m.to[2] = ldexp(far, -5);
     return rel_image_near(c, &m, "translated");
 }
 /* Leaves out what is at rest, moves as prescribed, or depends on velocities: all but walls and bodies alone. What
@@ -465,6 +466,22 @@ static int rel_several(rel_case *c) {
         rel_find(&rel_image.op[rel_image.count++], "wall")->v[0] = at;
     }
     return rel_near(c, &rel_image, &how, &rel_same, "a mesh as two walls");
+}
+/* "A wall whose motion has not begun, or whose speed is 0, is at rest" (docs/theory_surfaces.md). */
+static int rel_not_begun(rel_case *c) {
+    const rel_how how = {0};
+    rel_op *m;
+    int i;
+    for (i = 0; i < c->s->count; i++)
+        if (rel_is_wall(c->s->op[i].call) && !c->s->op[i].step && !rel_wall_is_moved(c->s, i)) break;
+    if (!c->ran || i == c->s->count) return REL_SKIPPED;
+    rel_copy(&rel_image, c->s);
+    m = rel_more(&rel_image, REL_MOTION, 0);
+    rel_put(m, "wall", i);
+    rel_put(m, "kind", DEM_MOTION_TRANSLATING);
+    rel_put3(m, "velocity", 0, 0.1, 0);
+    rel_put(m, "start", 1000);
+    return rel_near(c, &rel_image, &how, &rel_same, "with a motion that has not begun");
 }
 /* ---- belts ---- */
 /* A plane that moves in itself and a plane at rest whose surface moves push grains in the same way. */

@@ -12,7 +12,7 @@ typedef struct rel_rule { const char *rows; int needs; const char *others, *why;
 #define REL_FEED_KINDS "feed of classes,endless feed,feed at once,feed by mass,round feed,feed seed,thrown feed," \
     "feed in a window,feed inside,feed of shapes,feed of a material,feed of sizes"
 #define REL_WALLED "planes,flat mesh,bumpy mesh,profile,cylinder,revolved,cone,wall of grains,sieve," \
-    "periodic floor,outflow"
+    "periodic floor,outflow,flush boxes"
 static const rel_rule rel_rules[] = {
     {"linear,hysteretic,no tangent,viscous,step friction,Mindlin,Mindlin rescaled,constant rolling,EPSD rolling,"
      "clipped,compensated,elastic load,magnitude load,spring slider,remainder slider,forward Euler,symplectic Euler,"
@@ -23,13 +23,14 @@ static const rel_rule rel_rules[] = {
      "impulses at a distance", 1, "impulses", "impulses only"},
     {REL_SOLIDS, 0, "planar", "shapes in three dimensions"},
     {"polygons,concave polygons", 1, "planar", "shapes of the plane"},
-    {"flat mesh,bumpy mesh,revolved,cone,wall of grains,sieve,user motion,servo,rod",
+    {"flat mesh,bumpy mesh,revolved,cone,wall of grains,sieve,user motion,servo,rod,flush boxes,sheet",
      0, "planar", "drawn in three dimensions"},
     {REL_MOVED ",belt,wall removed,outlet of a wall,rail of a wall,joint to a wall",
      0, "periodic,open", "there is no wall"},
     {"user motion,rod,outflow", 0, "periodic floor", "drawn without periods"},
     {REL_MOVED, 0, REL_MOVED, "one wall has one motion"},
     {"rod", 0, "periodic,open", "there is no floor"},
+    {"sheet", 0, "periodic,periodic floor", "drawn without periods"},
     {REL_WALLED, 0, "cell", "a cell has no walls"},
     {"cell", 1, "periodic", "a cell is periodic"},
     {"cell", 0, "feed,outlet,rail,servo", "cell"},
@@ -67,6 +68,8 @@ static const rel_rule rel_rules[] = {
     {"outline mass,alike spheres,given mass", 1, "clusters", "a kind of it"},
     {"ignored pair", 1, "two materials", "a pair of two"},
     {"rail", 0, "impulses", "rails need springs"},
+    {"laid cube", 1, "cubes", "a kind of it"},
+    {"laid cube", 0, "bumpy mesh,profile,wall of grains,sieve,rod,periodic,open", "there is no flat floor"},
     {"sieve disc,reduced holes,fractions of segments",
      0, "ellipsoids,cubes,rocks,unions,unions of ellipsoids,unions of polyhedra,"
      "polygons,concave polygons", "for spheres only"},

@@ -170,8 +170,9 @@ static int rel_shrink_while(rel_scene *s, rel_predicate breaks, void *user, int 
     }
     return h.evaluations;
 }
-/* What must stay: the relation, and whether the other run differs or ends otherwise. */
-typedef struct rel_wanted { int relation, ends; } rel_wanted;
+/* What must stay: the relation, whether the other run differs or ends otherwise, and that it differs by more than
+   rounding if it does. */
+typedef struct rel_wanted { int relation, ends; double excess; } rel_wanted;
 static int rel_breaks(const rel_scene *s, void *user) {
     static rel_scene own;
     static rel_case c;
@@ -181,8 +182,11 @@ static int rel_breaks(const rel_scene *s, void *user) {
     broken = rel_open_case(&c, &own) && rel_judge(&c, wanted->relation) == REL_BROKEN;
     ends = c.ran != c.other_ran;
     rel_close_case(&c);
-    if (broken && wanted->ends < 0) wanted->ends = ends;
-    return broken && ends == wanted->ends;
+    if (broken && wanted->ends < 0) {
+        wanted->ends = ends;
+        wanted->excess = c.excess < 100 ? 0 : 100;
+    }
+    return broken && ends == wanted->ends && !(c.excess < wanted->excess);
 }
 enum { REL_SHRINK_MOST = 20000, REL_SHRINK_SECONDS = 60 };
 /* Makes a scene that breaks a relation smaller. The time step becomes explicit. An allocation that is refused is
