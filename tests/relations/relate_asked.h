@@ -6,9 +6,9 @@
 
 /* Joined points coincide in the middle of the next step. Joints never add energy, and keep a gap where closing it would
    (docs/impulses.md), so the first step of one joint is asked, if it took energy. The turns of a step are foreseen to
-   the third order of their angle. A joint between two fixed bodies holds nothing. Where nothing else acts, the force of a
-   joint changes smoothly: second differences of 30 steps, once it has pulled for four, are below 0.04 of the largest
-   force in all scenes that were drawn; 0.2 are allowed. */
+   the third order of their angle. A joint between two fixed bodies holds nothing. Where nothing else acts, the force
+   of a joint changes smoothly: second differences of 30 steps, once it has pulled for four, are below 0.04 of the
+   largest force in all scenes that were drawn; 0.2 are allowed. */
 CODE(joint_wrong, static double length(dem_vec3 v) { return sqrt(v.x*v.x + v.y*v.y + v.z*v.z); }
 static int joint_jumps(dem_world *w, dem_joint j, dem_body a) {
     double jump = 0;
