@@ -426,7 +426,8 @@ enum { REL_WORLD, REL_MATERIAL, REL_PAIR, REL_ELLIPSOID, REL_CLUSTER, REL_POLYHE
        REL_CALLS };
 /* zero_at: null, or an A with the defaults; a compiler warns if it is of another type. */
 #define C_(name, A, zero_at, makes, type, desc, zero, text) \
-    {"dem_" #name, rel_f_##name, REL_N(rel_f_##name), sizeof(A) + 0*sizeof(1 ? (zero_at) : (const A *)0), zero_at, rel_do_##name, makes, type, desc, zero, text}
+    {"dem_" #name, rel_f_##name, REL_N(rel_f_##name), sizeof(A) + 0*sizeof(1 ? (zero_at) : (const A *)0), zero_at, \
+     rel_do_##name, makes, type, desc, zero, text}
 static int32_t rel_do_world(dem_world *w, void *at) { (void)w; (void)at; return 1; }        /* run.h creates it */
 static const rel_call rel_calls[REL_CALLS] = {
     C_(world, rel_a_world, 0, "", "", "dem_world_desc", "DEM_WORLD_DESC", "w = dem_world_create(&d)"),
