@@ -4288,9 +4288,17 @@ class World(WorldBase):
         return self._id(_lib.dem_shape_cluster_add(self._at, desc))
 
     def shape_polyhedron(self, points):
-        """"""
+        """Adds a convex polyhedron: the convex hull of points (count x 3, m, 4 to 10,000), in a frame of your choice.
+        Points inside the hull, or within 1e-10 of its size (single precision: 1e-6) of a face, are dropped. If more
+        than DEM_POLYHEDRON_FACES faces remain, this tolerance is raised up to 1e-5. It is an error if still more
+        remain, or if the points lie in a plane. Not in planar worlds. Two polyhedra repel each other by a pressure
+        field in the volume they share ([ELA19], >>polyhedra), a polyhedron and a sphere or ellipsoid at the nearest
+        point. dem_contacts_get reports a contact of two polyhedra, or of one with a wall, as four points over which
+        its force is spread; counters count it once. With impulses it has up to four points, each with its own gap
+        (>>gaps); counters count the points with a repulsive force.
+        """
         points = _array(points, Real)
-        count = _count(points, 1, 'points')
+        count = _count(points, 3, 'points')
         return self._id(_lib.dem_shape_polyhedron_add(self._at, count, points))
 
     def shape_mesh(self, mesh, dent=0):

@@ -559,6 +559,9 @@ static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = DEM_ZERO;
 /* Adds a cluster and computes its principal axes. Not in planar worlds. */
 DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc *desc);
 
+/* Faces of a polyhedron, at most. */
+enum { DEM_POLYHEDRON_FACES = 100 };
+#if !defined(DEM_NO_POLYHEDRA)
 /* Adds a convex polyhedron: the convex hull of points (count x 3, m, 4 to 10,000), in a frame of
    your choice. Points inside the hull, or within 1e-10 of its size (single precision: 1e-6) of a
    face, are dropped. If more than DEM_POLYHEDRON_FACES faces remain, this tolerance is raised up to
@@ -568,8 +571,6 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc
    reports a contact of two polyhedra, or of one with a wall, as four points over which its force is
    spread; counters count it once. With impulses it has up to four points, each with its own gap
    (>>gaps); counters count the points with a repulsive force. */
-enum { DEM_POLYHEDRON_FACES = 100 };
-#if !defined(DEM_NO_POLYHEDRA)
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
 /* Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if
    the mesh lies deeper inside its hull than dent (m, >= 0; 0 accepts convex meshes only, up to
