@@ -273,8 +273,10 @@ static int rel_zero_rail(const rel_case *c, rel_scene *s, int on) {
     rel_put3(rail, "d.velocity", 0.1, 0.2, 0);
     return 1;
 }
+/* A motion of speed 0. A body on the rail of a moving wall is placed by the pose of that wall, with its rounding. */
 static rel_op *rel_zero_motion(rel_scene *s, int kind, int on) {
     rel_op *m;
+    rel_leave_call(s, REL_RAIL);
     rel_leave_call(s, REL_MOTION);
     rel_leave_call(s, REL_TABLE);
     if (!on) return &s->op[0];
