@@ -80,6 +80,7 @@ static inline void scene_box_points(double a, double b, double c, dem_real *p) {
         p[3*i + 2] = (dem_real)(i & 4 ? c/2 : -c/2);
     }
 }
+#ifndef DEM_NO_POLYHEDRA
 static inline dem_shape scene_box(dem_world *world, double a, double b, double c) {
     dem_real p[24];
     scene_box_points(a, b, c, p);
@@ -98,6 +99,7 @@ static inline dem_shape scene_rock(dem_world *world, uint64_t *state, int count,
     }
     return dem_shape_polyhedron_add(world, count, p);
 }
+#endif
 static inline dem_quat scene_turn(uint64_t *state) {
     const dem_vec3 axis = scene_at(state, 2, -1, 2, -1, 2, -1);
     return dem_quat_about(axis, (dem_real)(6*scene_random(state)));

