@@ -1,12 +1,16 @@
 # sh tests/check.sh [short]: dem.h through every compiler, standard, precision and warning found here.
 # The matrix is the middle of this file, one line a case. `short` leaves out most strict warnings, the
 # optimisation levels and the test runs. A compiler that is missing is skipped, loudly. Ends with
-# "N passed, N failed, N skipped" and a non-zero code when anything failed. CASES=REGEX runs the cases whose names
-# match, NOT=REGEX leaves those out that match, which finishes a check that was interrupted.
+# "N passed, N failed, N skipped" and a non-zero code when anything failed. A check that was interrupted, or in which
+# a case failed, goes on: what passed with the same files and compilers is not run again, FRESH=1 runs all. CASES=REGEX
+# runs the cases whose names match, NOT=REGEX leaves those out that match.
 JOBS=${JOBS:-1}
 export OMP_WAIT_POLICY=passive   # several programs share the cores: a thread that waits sleeps
-dir=build/check
-rm -rf $dir; mkdir -p $dir build/tmp
+dir=build/check; [ "$1" = short ] && dir=build/check_short
+inputs=$({ find .ci Makefile *.md LICENSE bench dem.c dem.h docs examples src tests -type f | LC_ALL=C sort | xargs cat
+    for cc in gcc clang tcc; do $cc -v 2>&1; done; } | cksum)
+[ -z "$FRESH" ] && [ "$(cat $dir/inputs 2>/dev/null)" = "$inputs" ] || rm -rf $dir
+mkdir -p $dir build/tmp; echo "$inputs" > $dir/inputs; rm -f $dir/*.sh
 number=1000; skipped=0; left=0; turn=2                 # turn 1: the long ones, which begin first
 
 found() { command -v "$1" >/dev/null 2>&1; }
@@ -187,8 +191,8 @@ tests() {
     names=$(for t in tests/*/test_*.c tests/hard/hard_*.c; do echo "build/$(basename "$t" .c)"; done)
     [ "$2" = tcc ] && names=$(echo "$names" | grep -vE "/hard_|/test_($long)\$")
     [ "$emulator" ] && names="build/test_api build/test_feed build/test_own_law"
-    try "$1: tests" "mkdir -p \$bin && for f in Makefile bench dem.c dem.h docs examples src tests; do ln -s \$PWD/\$f \$bin; done &&" \
-        "cd \$bin && make CC='$2' CFLAGS='$3' LDFLAGS='$4' OMP= JOBS=1 $(echo $names) && JOBS=1 EMULATOR=$emulator sh tests/run.sh '' $(echo $names)"
+    try "$1: tests" "mkdir -p \$bin && for f in Makefile bench dem.c dem.h docs examples src tests; do ln -sfn \$PWD/\$f \$bin/\$f; done &&" \
+        "cd \$bin && mkdir -p passed && make CC='$2' CFLAGS='$3' LDFLAGS='$4' OMP= JOBS=1 $(echo $names) && JOBS=1 PASSED=passed EMULATOR=$emulator sh tests/run.sh '' $(echo $names)"
     turn=2
 }
 # clang's undefined behaviour knows what gcc's does not: null + 0, and other arithmetic of pointers
@@ -210,7 +214,7 @@ if [ "$1" != short ]; then
     turn=1
     # as they are written they take two hours: make studies-check LONG=1
     try "every documented command of the studies, in its short form" \
-        "mkdir -p \$bin/build && for f in Makefile README.md bench dem.h docs examples src tests; do ln -s \$PWD/\$f \$bin; done &&" \
+        "mkdir -p \$bin/build && for f in Makefile README.md bench dem.h docs examples src tests; do ln -sfn \$PWD/\$f \$bin/\$f; done &&" \
         "cc -O2 -c dem.c -o \$bin/dem.o && for p in \$(sed -n 's/^programs=\"\(.*\)\"/\1/p' tests/studies.sh); do" \
         "cc -O2 -I. examples/\$p.c \$bin/dem.o -o \$bin/build/\$p -lm || exit 1; done && cd \$bin && JOBS=1 sh tests/studies.sh"
     turn=2
@@ -230,9 +234,10 @@ fi
 # run them, JOBS at a time, and tell
 cat > $dir/one <<'X'
 name=$(sed -n '1s/# //p' "$1")
-if sh "$1" > "$1.log" 2>&1; then echo "ok    $name"; : > "$1.ok"
+cmp -s "$1" "$1.ok" && exit                    # passed before the interruption
+grep -q PASSED= "$1" || rm -rf "${1%.sh}.bin"  # folders of tests know which programs passed
+if sh "$1" > "$1.log" 2>&1; then echo "ok    $name"; cp "$1" "$1.ok"; rm -rf "${1%.sh}.bin" "${1%.sh}.bin.o"
 else echo "FAIL  $name"; { sed 1d "$1"; sed -n "/FAILED\|rror:\|ERROR\|undefined ref/,\$p" "$1.log" | head -n 12; tail -n 1 "$1.log"; } | cut -c1-200 | sed "s/^/      | /"; fi
-rm -rf "${1%.sh}.bin" "${1%.sh}.bin.o"
 X
 for case in $dir/*.sh; do
     sed -n '1s/# //p' $case | grep -E -e "${CASES:-.}" | grep -qvE -e "${NOT:-^$}" || { rm $case; left=$((left + 1)); }
@@ -240,7 +245,7 @@ done
 [ $left -eq 0 ] || skip "$left cases that CASES and NOT leave out"
 ls $dir/*.sh | xargs -P "$JOBS" -n 1 sh $dir/one
 echo
-for case in $dir/*.sh; do [ -f $case.ok ] || sed -n '1s/# /FAILED: /p' $case; done
-cases=$(ls $dir/*.sh | wc -l); passed=$(ls $dir/*.ok 2>/dev/null | wc -l)
+for case in $dir/*.sh; do cmp -s $case $case.ok || sed -n '1s/# /FAILED: /p' $case; done
+cases=$(ls $dir/*.sh | wc -l); passed=$(for case in $dir/*.sh; do cmp -s $case $case.ok && echo $case; done | wc -l)
 echo "check: $((passed)) passed, $((cases - passed)) failed, $skipped skipped"
 [ "$passed" -eq "$cases" ]
