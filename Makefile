@@ -64,14 +64,19 @@ endif
 .PHONY: help all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
-help: ## print this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
+# a target with `## TEXT` is in both lists, one with `### TEXT` in the long one; the short list ends TEXT at `;` or `:`
+help: ## list the targets of every day; `make help-all` lists every target, with what each can be told
+	@awk '/^[a-z-]+:.* ## / { target = $$1; sub(/.* ## /, ""); sub(/[;:] .*/, ""); printf "  make %-10s %s\n", \
+	    substr(target, 1, length(target) - 1), $$0 } END { print "  make help-all   list every target, with options" }' Makefile
+help-all:
+	@awk '/^[a-z-]+:.* ###? / { target = $$1; sub(/.* ###? /, ""); printf "  make %s\n      %s\n", \
+	    substr(target, 1, length(target) - 1), $$0 }' Makefile | fold -s -w 100
 
 run: build/mill_first ## run a tumbling mill of coarse beads: a replay for the browser, pictures and figures in build/out/mill
 	@mkdir -p build/out/mill
 	GOMP_SPINCOUNT=1000 build/mill_first --first --replay --out build/out/mill
 
-new: ## NAME=my: write a small program with comments to my.c; its first lines show how to build it
+new: ## write a small program with comments to my.c; NAME=my: its first lines show how to build it
 	@test -n "$(NAME)" || { echo "make new NAME=my: give the program a name"; exit 1; }
 	@test ! -e "$(NAME).c" || { echo "make new: $(NAME).c is there already; give another NAME"; exit 1; }
 	@sed 's#NAME#$(notdir $(NAME))#g' examples/new/program.c > "$(NAME).c"
@@ -93,13 +98,13 @@ rooms: ## copy a change that was made in dem.h itself into the files in src/
 test: $(TESTS) ## build and run all tests; FILTER=words: only those whose names contain the words; OF=contact: only those in tests/contact
 	@JOBS=$(JOBS) sh tests/run.sh "$(FILTER)" $(if $(OF),$(patsubst %.c,build/%,$(notdir $(wildcard tests/$(OF)/*.c))),$(TESTS))
 
-hard: $(HARD) build/test_facets build/test_sieve build/test_bonds ## run the hard cases in their long form, over an hour, and count cases and impacts; FILTER=words as in test
+hard: $(HARD) build/test_facets build/test_sieve build/test_bonds ### run the hard cases in their long form, over an hour, and count cases and impacts; FILTER=words as in test
 	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $^ > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
 
-coverage: ## count lines and branches of src/ that the tests execute, by gcov; OF=core, FILTER=words as in test; PROGRAMS=test_maths: only these; PROGRAMS=relations: only N (400) scenes of relations
+coverage: ### count lines and branches of src/ that the tests execute, by gcov; OF=core, FILTER=words as in test; PROGRAMS=test_maths: only these; PROGRAMS=relations: only N (400) scenes of relations
 	@FILTER="$(FILTER)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" N=$(N) JOBS=$(JOBS) sh tests/coverage.sh
 
-mutants: ## N=200 SEED=1: make small errors in src/, one after another, and list those that no test notices; OF=core, PROGRAMS=... as in coverage
+mutants: ### N=200 SEED=1: make small errors in src/, one after another, and list those that no test notices; OF=core, PROGRAMS=... as in coverage
 	@N="$(N)" SEED="$(SEED)" OF="$(OF)" PROGRAMS="$(PROGRAMS)" JOBS=$(if $(filter file,$(origin JOBS)),1,$(JOBS)) \
 	    CC="$(CC)" CFLAGS="$(CFLAGS)" OMP="$(OMP)" sh tests/mutants.sh
 
@@ -113,34 +118,34 @@ relations: build/relations $(if $(SEED),,build/relations_float) ## draw N (400) 
 	    build/relations $$logs --page build/out/relations.md; code=$$?; \
 	    echo "single precision:"; build/relations_float --scenes 50 && exit $$code; fi
 
-relations-sanitized: ## the same with sanitizers of addresses and undefined behaviour; N (1000) scenes, 140 s of processor time per 1000
+relations-sanitized: ### the same with sanitizers of addresses and undefined behaviour; N (1000) scenes, 140 s of processor time per 1000
 	@mkdir -p build/san build/tmp
 	@$(MAKE) --no-print-directory build/san/relations
 	build/san/relations --scenes $(or $(N),1000)
 
-law: $(if $(LAW),build/dem.o,build/exam) ## LAW=path/to/my_law.h: examine a contact law and draw its curves on a page; without LAW the built-in laws
+law: $(if $(LAW),build/dem.o,build/exam) ## examine a contact law and draw its curves on a page; LAW=path/to/my_law.h: that law; without LAW the built-in laws
 	@mkdir -p build/out/exam
 	@if [ -n "$(LAW)" ]; then $(COMPILE) -DLAW_FILE='"$(abspath $(LAW))"' examples/exam.c build/dem.o -o build/law $(LINK) && build/law; \
 	    else build/exam; fi
 
-lessons: $(LESSONS) ## build and run the twelve lessons, record replays in build/out/NAME, check that they mark answers correctly
+lessons: $(LESSONS) ## build and run the twelve lessons, record replays in build/out/NAME, check their marks
 	@JOBS=$(JOBS) sh tests/lessons.sh $(LESSONS)
 
 examples: lessons shows snippets ## run the lessons, the other examples that check themselves, and the programs in the manual and the pages
 	@(cd build/out/hopper && cp hopper.csv whole.csv && ../../hopper --resume > resumed.txt && cmp hopper.csv whole.csv) || { echo "examples failed: resumed"; exit 1; }
 	@echo "all examples as expected"
 
-shows: $(SHOWS) ## run the other examples that check themselves; SHOWS=build/belt: only these
+shows: $(SHOWS) ### run the other examples that check themselves; SHOWS=build/belt: only these
 	@failed=; for e in $(SHOWS); do n=$$(basename $$e); echo "== $$n"; rm -rf build/out/$$n; mkdir -p build/out/$$n; cp examples/data/*.stl build/out/$$n; \
 	    (cd build/out/$$n && ../../$$n) || failed="$$failed $$n"; done; \
 	if test -n "$$failed"; then echo "examples failed:$$failed"; exit 1; fi
 
 studies: $(STUDIES) ## build the studies into build/; each has an option --help
 
-studies-check: build/mill build/screener build/ellipsoids build/separator build/shear build/triaxial ## run every command of the four studies and of two tests of materials in README.md and docs/ in a short form; LONG=1: as written, in two hours
+studies-check: build/mill build/screener build/ellipsoids build/separator build/shear build/triaxial ### run every command of the four studies and of two tests of materials in README.md and docs/ in a short form; LONG=1: as written, in two hours
 	@JOBS=$(JOBS) sh tests/studies.sh $(if $(LONG),long)
 
-mpi: build/dem.o ## build the programs in examples/mpi and run them on 1, 2 and 3 processes, if mpicc is installed
+mpi: build/dem.o ### build the programs in examples/mpi and run them on 1, 2 and 3 processes, if mpicc is installed
 	@printf '%s\n' '$(hash)include <mpi.h>' 'int main(void) { return MPI_Finalize(); }' > build/probe.c; \
 	if ! command -v $(MPICC) >/dev/null; then \
 	    echo "SKIP: $(MPICC) not found (Debian package libopenmpi-dev)"; \
@@ -155,7 +160,7 @@ mpi: build/dem.o ## build the programs in examples/mpi and run them on 1, 2 and 
 	        grep '^hash' build/mill_mpi.$$n; done; cmp build/out/mill_mpi_1/grains.svg build/out/mill_mpi_2/grains.svg; \
 	    test "$$(grep '^hash' build/mill_mpi.1)" = "$$(grep '^hash' build/mill_mpi.2)"; fi
 
-all: $(STUDIES) $(LESSONS) $(SHOWS) $(TESTS) $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) ## build everything, run nothing
+all: $(STUDIES) $(LESSONS) $(SHOWS) $(TESTS) $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) ### build everything, run nothing
 
 check: ## test with all compilers, standards, precisions, warnings and sanitizers found, over an hour; report what was skipped
 	@JOBS=$(JOBS) sh tests/check.sh
@@ -166,46 +171,46 @@ bench: $(BENCHES) $(BENCH_ALSO) ## run all benches in their quick form, in under
 	@$(BIND) build/bench && build/bench_single --brief && build/bench_O2 --brief --scene bed && \
 	    $(BIND) build/parallel --short --threads 2 --settle 0 && STEPS=60 ROUNDS=3 CORES=1 SCENES="bed drum gas" sh bench/peers.sh
 
-bench-compile: build/flags ## measure the processor time of compiling dem.h, for each compiler and level
+bench-compile: build/flags ### measure the processor time of compiling dem.h, for each compiler and level
 	@sh bench/compile.sh
 
-bench-effects: build/bench ## measure the cost of each effect, present and absent
+bench-effects: build/bench ### measure the cost of each effect, present and absent
 	@build/bench --scene effects --threads 1
 
-bench-instructions: ## count the instructions of each part of dem.h per body and step, by valgrind
+bench-instructions: ### count the instructions of each part of dem.h per body and step, by valgrind
 	@sh bench/instructions.sh
 
-bench-parallel: build/parallel ## measure threads, sizes and searches beside published figures, in minutes
+bench-parallel: build/parallel ### measure threads, sizes and searches beside published figures, in minutes
 	@$(BIND) build/parallel
 
-bench-peers: $(BENCHES) $(BENCH_ALSO) ## run the same scenes in dem.h and in LAMMPS, LIGGGHTS and YADE, as far as they are installed
+bench-peers: $(BENCHES) $(BENCH_ALSO) ### run the same scenes in dem.h and in LAMMPS, LIGGGHTS and YADE, as far as they are installed
 	@sh bench/peers.sh
 
-peers-check: build/bench build/blocks build/beside ## run bench-peers in a short form: small scenes, one round, all codes that are installed
+peers-check: build/bench build/blocks build/beside ### run bench-peers in a short form: small scenes, one round, all codes that are installed
 	@SHORT=1 sh bench/peers.sh
 
-bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/ellipsoids ## measure the speeds in docs/ again and write them; PAGES=roofline: one page
+bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/ellipsoids ### measure the speeds in docs/ again and write them; PAGES=roofline: one page
 	@sh bench/pages.sh $(PAGES)
 
 # figures that need no quiet machine: a busy one gives the same bits
-pages: $(LESSONS) build/readme_program ## write the figures that lessons and the README's program print into the pages
+pages: $(LESSONS) build/readme_program ### write the figures that lessons and the README's program print into the pages
 	@JOBS=$(JOBS) sh bench/pages.sh lessons heap files
 
-pages-check: ## list the measured figures in README.md and docs/ that are older than their code; STRICT=1: fail if there are any
+pages-check: ### list the measured figures in README.md and docs/ that are older than their code; STRICT=1: fail if there are any
 	@STRICT=$(STRICT) sh tests/pages.sh
 
-fuzz: ## run clang's fuzzer with sanitizers on each file reader and on random calls, FUZZ_SECONDS (600) each
+fuzz: ### run clang's fuzzer with sanitizers on each file reader and on random calls, FUZZ_SECONDS (600) each
 	@FUZZ_CC="$(FUZZ_CC)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
-docs: ## check that the links in README and docs lead somewhere, and that cited keys exist
+docs: ### check that the links in README and docs lead somewhere, and that cited keys exist
 	@awk -f tests/links.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md
 
-readers: build/write_files ## write every file format and open it with VTK and ASE
+readers: build/write_files ### write every file format and open it with VTK and ASE
 	@mkdir -p build/out/readers && cd build/out/readers && ../../write_files
 	@$(PYTHON) tests/read_vtk.py build/out/readers
 	@$(PYTHON) tests/read_xyz.py build/out/readers
 
-tags: ## check that dem.h is joined from src/, that its parts agree with its contents, that parts, functions and lines keep their limits, that volume I names nothing of volume II, that calls of user-defined functions are marked, and that relations call every public function
+tags: ### check that dem.h is joined from src/, that its parts agree with its contents, that parts, functions and lines keep their limits, that volume I names nothing of volume II, that calls of user-defined functions are marked, and that relations call every public function
 	@awk -f src/join.awk src/dem.h | cmp - dem.h
 	@awk -f tests/tags.awk dem.h
 	@awk -f tests/storeys.awk src/dem.h
@@ -214,10 +219,10 @@ tags: ## check that dem.h is joined from src/, that its parts agree with its con
 	@awk -f tests/relations/fields.awk tests/relations/fields.txt dem.h tests/relations/calls.h
 	@$(MAKE) --no-print-directory english
 
-english: ## list sentences of pages, public comments, error messages and test names that need a second reading
+english: ### list sentences of pages, public comments, error messages and test names that need a second reading
 	@awk -f tests/english.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md dem.h examples/*.c examples/*.h examples/laws/*.h tests/*.c tests/*/*.c
 
-options: dem.h ## write docs/options.md and docs/options_run.md, every field of every desc, from dem.h
+options: dem.h ### write docs/options.md and docs/options_run.md, every field of every desc, from dem.h
 	@mkdir -p build && $(CC) -std=c99 -DDEM_STATIC -DDEM_NO_OPENMP -I. tests/options.c -o build/options $(LDLIBS) && build/options > build/options.txt
 	@awk -f tests/options.awk - dem.h < build/options.txt > build/options.md && cp build/options.md docs/options.md
 	@awk -v part=run -f tests/options.awk - dem.h < build/options.txt > build/options.md && cp build/options.md docs/options_run.md
@@ -225,23 +230,23 @@ options: dem.h ## write docs/options.md and docs/options_run.md, every field of 
 python: dem.h ## write examples/python/dem.py from dem.h and examples/python/base.py
 	@mkdir -p build && $(PYTHON) examples/python/make.py > build/dem.py && cp build/dem.py examples/python/dem.py
 
-python-check: $(if $(HAVE_PYTHON),$(LESSONS)) ## test examples/python: dem.py is that of dem.h, layouts of structs, errors, functions, lessons; LONG=1: whole lessons
+python-check: $(if $(HAVE_PYTHON),$(LESSONS)) ### test examples/python: dem.py is that of dem.h, layouts of structs, errors, functions, lessons; LONG=1: whole lessons
 	@if [ -z "$(HAVE_PYTHON)" ]; then echo "SKIP: $(PYTHON) not found (Debian package python3): examples/python is not tested"; \
 	    else CC="$(CC)" JOBS=$(JOBS) LONG=$(LONG) DEM_CFLAGS="$(if $(filter file,$(origin CFLAGS)),-O1,$(CFLAGS))" $(PYTHON) tests/python/check.py "$(FILTER)"; fi
 
-web: ## build the browser lesson build/web/lesson.html (dem.h in WebAssembly) and the same scenes as a program
+web: ### build the browser lesson build/web/lesson.html (dem.h in WebAssembly) and the same scenes as a program
 	@sh examples/web/make.sh build/web || test $$? -eq 77
 
-viewer: ## copy examples/replay/viewer.html into src/replay/viewer.h
+viewer: ### copy examples/replay/viewer.html into src/replay/viewer.h
 	@mkdir -p build && awk -f tests/viewer.awk examples/replay/viewer.html src/replay/viewer.h > build/viewer.h && cp build/viewer.h src/replay/viewer.h
 
-browser: build/write_replays ## play replays in a headless chromium: frames, pixels, no errors
+browser: build/write_replays ### play replays in a headless chromium: frames, pixels, no errors
 	@sh tests/browser.sh
 
-recipes: ## apply the patches of docs/extending*.md to a copy of dem.h and use the result
+recipes: ### apply the patches of docs/extending*.md to a copy of dem.h and use the result
 	@CC="$(CC)" sh tests/recipes.sh
 
-snippets: build/dem.o ## compile the programs in dem.h's manual and in the pages; run those of docs/how_to*.md and compare what they print
+snippets: build/dem.o ### compile the programs in dem.h's manual and in the pages; run those of docs/how_to*.md and compare what they print
 	@rm -rf build/snippets && mkdir -p build/snippets
 	@awk -v out=build/snippets -f tests/snippets.awk dem.h README.md CONTRIBUTING.md docs/extending.md docs/laws.md docs/replay.md \
 	    docs/own_law.md docs/parallel.md docs/impulses.md docs/shapes.md docs/how_to.md docs/how_to_shapes.md docs/how_to_more.md

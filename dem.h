@@ -5579,6 +5579,9 @@ static uint64_t demi_steps_done(const dem_world *w) {
     return w->clock.steps - (uint64_t)(w->stage.moved && !w->look.calling.who);
 }
 
+/* Returns the radius of body i, m: of a sphere, or of the smallest sphere around its centre that
+   encloses it. It stands beside the position, so that a search reads both at once. */
+DEM_INLINE dem_real demi_radius(const dem_world *w, int i) { return w->bodies.pos[4*i + 3]; }
 /* Calls a task for each work group. Marks this as a call of user-defined functions, because tasks
    on several threads cannot. */
 static void demi_domains_do(dem_world *w, demi_task task) {
@@ -5621,7 +5624,7 @@ DEM_INLINE dem_vec3 demi_near_arm(const dem_world *w, size_t at, int side) {
 DEM_INLINE dem_real demi_near_radius(const dem_world *w, size_t at, int side) {
     const int32_t *ball = side ? w->near.ball_b : w->near.ball_a;
     return w->effects.clustered ? w->bodies.centre[4*ball[at] + 3]
-        : w->bodies.pos[4*(side ? w->near.b : w->near.a)[at] + 3];
+        : demi_radius(w, (side ? w->near.b : w->near.a)[at]);
 }
 /* Vector, m, from the centre of a body to the image of the other in entry `at`; and that from the
    centre of sphere a to the image of sphere b. */
@@ -7710,12 +7713,12 @@ DEM_INLINE int demi_lone(const dem_world *w, int body) {
     return !shape || (shape->lone && demi_response_is(w, DEMI_PRESSING));
 }
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
-    return w->bodies.pos[4*body + 3]/shape->radius;
+    return demi_radius(w, body)/shape->radius;
 }
 /* Principal moments: precomputed per mass and scale for shapes, analytic for spheres and discs. */
 static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2, principal */
     const demi_shape *shape = demi_shape_of(w, body);
-    const double m = (double)w->bodies.mass[body], r = (double)w->bodies.pos[4*body + 3];
+    const double m = (double)w->bodies.mass[body], r = (double)demi_radius(w, body);
     dem_real one;
     if (shape) {
         one = demi_scale_of(w, body, shape);
@@ -7740,7 +7743,7 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
     dem_real scale, far = -1;
     dem_vec3 e;
     int i;
-    if (!shape) return w->bodies.pos[4*body + 3];
+    if (!shape) return demi_radius(w, body);
     scale = demi_scale_of(w, body, shape);
     e = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), n);
     for (i = 0; i < shape->pieces; i++) {
@@ -7927,7 +7930,7 @@ static int demi_parts_count(const dem_world *w, int body) {
 DEM_INLINE void demi_part_single(const dem_world *w, int body, const demi_shape *shape,
                                  demi_part *p) {
     p->kind = shape->kind;
-    p->radius = w->bodies.pos[4*body + 3];
+    p->radius = demi_radius(w, body);
     p->centre = demi_v(0, 0, 0);
     p->scale = demi_scale_of(w, body, shape);
     p->axes = demi_scale(shape->axes, p->scale);
@@ -7957,7 +7960,7 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
     }
     memset(&p, 0, sizeof p);
     p.kind = DEMI_BALL;
-    p.radius = w->bodies.pos[4*body + 3];
+    p.radius = demi_radius(w, body);
     return p;
 }
 /* Returns the rotated spheres of a cluster: rows of centre (from the body's) and radius, m. */
@@ -8051,7 +8054,7 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
                                 dem_real enough) {
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                          demi_at(w->bodies.pos + 4*a)), demi_at(shift));
-    const dem_real d = demi_length(r), rb = w->bodies.pos[4*b + 3];
+    const dem_real d = demi_length(r), rb = demi_radius(w, b);
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
     dem_real least = enough;
     int i, j;
@@ -8171,7 +8174,7 @@ static int demi_centres_lay(dem_world *w) {
         if (!demi_lone(w, i)) who[count++] = i;
         else {
             lone[0] = lone[1] = lone[2] = 0;
-            lone[3] = w->bodies.pos[4*i + 3];
+            lone[3] = demi_radius(w, i);
         }
         if (count == DEMI_TILE || i + 1 == w->bodies.count) {
             demi_centres_rotate(w, who, count);
@@ -9784,7 +9787,7 @@ static const dem_real *demi_wrapped(const dem_world *w) {
     if (!p.any) return w->bodies.pos;
     for (i = 0; i < w->bodies.count; i++) {
         demi_put(w->bodies.scratch + 4*i, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
-        w->bodies.scratch[4*i + 3] = w->bodies.pos[4*i + 3];
+        w->bodies.scratch[4*i + 3] = demi_radius(w, i);
     }
     return w->bodies.scratch;
 }
@@ -10335,7 +10338,7 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
     s->spin = demi_at(w->bodies.spin + 4*i);
     s->force = demi_at(w->bodies.force + 4*i);
     s->torque = demi_at(w->bodies.torque + 4*i);
-    s->radius = w->bodies.pos[4*i + 3];
+    s->radius = demi_radius(w, i);
     s->mass = w->bodies.mass[i];
     s->moments = demi_moments_of(w, i);
     s->reals = w->bodies.real_count ? w->bodies.reals + w->bodies.real_count*i : 0;
@@ -10375,7 +10378,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (w->desc.planar) w->bodies.pos[4*i + 2] = 0;
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
-        (double)w->bodies.pos[4*i + 3]));
+        (double)demi_radius(w, i)));
     if (w->bodies.orienting)
         demi_quat_put(w->bodies.orient + 4*i,
                       demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)
@@ -11207,7 +11210,7 @@ static double demi_cell_speed(const dem_world *w) {
     double radius = 0;
     int i;
     for (i = 0; i < w->bodies.count; i++)
-        radius = DEMI_MAX(radius, (double)w->bodies.pos[4*i + 3]);
+        radius = DEMI_MAX(radius, (double)demi_radius(w, i));
     return 2*radius*norm;
 }
 /* Adds a contact to the virial. force: N, on a. */
@@ -14449,7 +14452,7 @@ static int demi_needs_facets(const dem_world *w, const demi_wall *wall, int i) {
 /* The number of the surface on which body i touches a wall. */
 static int demi_surface_for(const dem_world *w, int wall, int i) {
     int j = demi_needs_facets(w, &w->walls[wall], i) ? 0 : w->surface_count;
-    const int scale = 1 + demi_scale_bit(w->bodies.pos[4*i + 3]);
+    const int scale = 1 + demi_scale_bit(demi_radius(w, i));
     while (j < w->surface_count && !(w->surfaces[j].scale == scale &&
                                      w->surfaces[j].lead == wall)) j++;
     return j < w->surface_count ? w->wall_count + j : demi_surface_number(w, wall);
@@ -14459,7 +14462,7 @@ static int demi_surface_for(const dem_world *w, int wall, int i) {
 static int demi_surface_scale(const dem_world *w, int j, int i) {
     const demi_wall *s = demi_surface_of(w, j);
     const demi_wall *wall = s->scale ? &w->walls[s->lead] : s;
-    return demi_needs_facets(w, wall, i) ? 1 + demi_scale_bit(w->bodies.pos[4*i + 3]) : 0;
+    return demi_needs_facets(w, wall, i) ? 1 + demi_scale_bit(demi_radius(w, i)) : 0;
 }
 /* The cell in column u and row v of a tessellation that repeats, and its displacement, m, in the
    frame of the surface. Columns 65,536 apart have the same number: the one next to `at` counts. */
@@ -14525,7 +14528,7 @@ static int demi_tessellations_make(dem_world *w, uint64_t scales) {
 }
 /* The bit of body i in effects.scales if it needs a tessellation that does not exist, else 0. */
 static uint64_t demi_scale_missing(const dem_world *w, int i) {
-    const uint64_t bit = UINT64_C(1) << demi_scale_bit(w->bodies.pos[4*i + 3]);
+    const uint64_t bit = UINT64_C(1) << demi_scale_bit(demi_radius(w, i));
     int j;
     for (j = 0; j < w->wall_count && w->bodies.shaped && !(w->effects.scales & bit); j++)
         if (demi_needs_facets(w, &w->walls[j], i)) return bit;
@@ -15262,7 +15265,7 @@ static double demi_radii_count(const dem_world *w, double *top, int *below) {
     }
     /* neighbours in the arrays are often alike: starts from the last k */
     for (i = 0, k = 0; i < w->bodies.count; i++) {
-        const double r = (double)w->bodies.pos[4*i + 3], side = 2*r;
+        const double r = (double)demi_radius(w, i), side = 2*r;
         while (k > 0 && r > limit[k]) k--;
         while (k < DEMI_LEVELS - 1 && r <= limit[k + 1]) k++;
         below[k]++;
@@ -15340,7 +15343,7 @@ static int demi_levels_lay(dem_world *w) {
     for (i = 0; i < w->bodies.count; i++) {
         const demi_level *level = w->levels.level;
         while (level < w->levels.level + w->levels.count - 1 &&
-               (double)w->bodies.pos[4*i + 3] <= level[1].radius)
+               (double)demi_radius(w, i) <= level[1].radius)
             level++;
         w->bodies.cell_of[i] = level->first +
             demi_cell_of(&p, w->cell_origin, level->size, level->cells, along,
@@ -15397,7 +15400,7 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
         w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
     const double reach =
-        ((double)w->bodies.pos[4*a + 3] + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
+        ((double)demi_radius(w, a) + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
         slack;
     const double slant = demi_slant(p), lean = (slant - 1)*reach;
     const demi_stretch sx = demi_level_span(w, level, 0, x, reach*slant);
@@ -15557,7 +15560,7 @@ static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
 /* Lower or upper end, m, of the box of a body, by slot. */
 static dem_real demi_box_end(const dem_world *w, int slot, int axis, int upper) {
     const int i = w->bodies.slot_index[slot];
-    const dem_real grow = w->bodies.pos[4*i + 3] + demi_cover(w)/2;
+    const dem_real grow = demi_radius(w, i) + demi_cover(w)/2;
     return upper ? w->bodies.pos[4*i + axis] + grow : w->bodies.pos[4*i + axis] - grow;
 }
 /* True if the boxes of two bodies, by slot, overlap on every axis that is not periodic. */
@@ -15707,7 +15710,7 @@ static void demi_rows_linked(dem_world *w, int d) {
 
 /* Computes the bins of a body's box: for each axis the first one and how many more. */
 static void demi_bins_of(dem_world *w, int body) {
-    const double grow = ((double)w->bodies.pos[4*body + 3] + (double)demi_cover(w)/2)*(1 + 1e-5);
+    const double grow = ((double)demi_radius(w, body) + (double)demi_cover(w)/2)*(1 + 1e-5);
     const demi_periods p = demi_periods_of(w);
     const dem_real *place = w->bodies.pos + 4*body;
     int32_t *at = w->bin_of + 6*body;
@@ -15742,7 +15745,7 @@ static int demi_bins_lay(dem_world *w) {
     double hi[3], least = 0, all;
     int i, k, n;
     for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
-    for (i = 0; i < w->bodies.count; i++) least += (double)w->bodies.pos[4*i + 3];
+    for (i = 0; i < w->bodies.count; i++) least += (double)demi_radius(w, i);
     least = 2*least/DEMI_MAX(w->bodies.count, 1) + (double)demi_cover(w) + 1e-300;
     if (!DEMI_GROW(w, w->bin_of, 6*(size_t)w->bodies.count + 6)) return 0;
     do {
@@ -15854,7 +15857,7 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_body[k] = body;
     w->wall_id[k] = wall;
     w->wall_element[k] = element;
-    w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* allows for rounding */
+    w->wall_gap[k] = gap - demi_radius(w, body)/10000;    /* allows for rounding */
     demi_put(w->wall_shift + 3*(size_t)k, shift);
     w->wall_cell[k] = cell;
 }
@@ -15889,7 +15892,7 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
 static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift,
                            dem_vec3 at, int32_t cell) {
     const demi_wall *wall = demi_surface_of(w, j);
-    const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
+    const dem_real r = demi_radius(w, i), near_by = r + demi_cover(w);
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
     dem_real away;
@@ -15948,12 +15951,12 @@ static void demi_wall_look_all(dem_world *w, demi_domain *domain, int d, int i, 
     const demi_wall *wall = demi_surface_of(w, j);
     const dem_vec3 at = demi_unrotate(wall->pose.rotation, demi_sub(demi_add(demi_at(
         w->bodies.pos + 4*i), shift), wall->pose.position)), *step = wall->step;
-    const double far = (double)(w->bodies.pos[4*i + 3] + demi_cover(w));
+    const double far = (double)(demi_radius(w, i) + demi_cover(w));
     const dem_box *box = &wall->box;
     double u, v, to_u, to_v;
     dem_vec3 n;
     if (demi_tessellation_beyond(w, wall, at, &n)) {
-        demi_wall_offer(w, domain, d, i, j, 0, -w->bodies.pos[4*i + 3], shift, 0);
+        demi_wall_offer(w, domain, d, i, j, 0, -demi_radius(w, i), shift, 0);
         return;
     }
     if (!(step[0].x > 0)) { demi_wall_look(w, domain, d, i, j, shift, at, 0); return; }
@@ -15986,7 +15989,7 @@ static void demi_body_walls(dem_world *w, int d, int i) {
             (w->effects.ignoring && demi_ignores(w, w->bodies.material[i] - 1, wall->material)))
             continue;
         for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
-                                    w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
+                                    demi_radius(w, i) + demi_cover(w), n, &shift); n++)
             demi_wall_look_all(w, domain, d, i, j, shift);
     }
     for (; !touches && k < d*w->wall_stride + domain->walls; k++) w->wall_gap[k] = DEMI_ONLY_SHEET;
@@ -16314,7 +16317,7 @@ static void demi_species_count(dem_world *w) {
         const demi_shape *shape = demi_shape_of(w, i);
         const int lone = demi_lone(w, i), count = lone ? 1 : e->clustered ? shape->count : 0;
         for (k = 0; k < count && e->species_count <= DEMI_SPECIES; k++) {
-            const demi_species s = demi_species_of(w, i, lone ? w->bodies.pos[4*i + 3]
+            const demi_species s = demi_species_of(w, i, lone ? demi_radius(w, i)
                 : shape->parts[4*k + 3]*demi_scale_of(w, i, shape));
             if (demi_species_find(w, &s) < e->species_count) continue;
             if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = s;
@@ -16496,7 +16499,7 @@ DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, int *coun
 static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *shift, dem_real cut) {
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                          demi_at(w->bodies.pos + 4*a)), demi_at(shift));
-    const dem_real far_b = w->bodies.pos[4*b + 3] + cut;
+    const dem_real far_b = demi_radius(w, b) + cut;
     const dem_real *x, *y;
     int na, nb, i, j;
     x = demi_balls_of(w, a, &na);
@@ -16534,8 +16537,8 @@ static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, 
         const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                              demi_at(w->bodies.pos + 4*a)),
                                     demi_at(w->image_shift + list->image[k]));
-        const dem_real cut = demi_near_cut(w, a, b), far_b = w->bodies.pos[4*b + 3] + cut;
-        const dem_real all_a = w->bodies.pos[4*a + 3] + far_b;
+        const dem_real cut = demi_near_cut(w, a, b), far_b = demi_radius(w, b) + cut;
+        const dem_real all_a = demi_radius(w, a) + far_b;
         const int32_t *start = w->bodies.centre_start;
         if (!(demi_dot(r, r) < all_a*all_a) || !demi_has_balls(w, a) || !demi_has_balls(w, b))
             continue;
@@ -16723,7 +16726,7 @@ static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
     const demi_walled *p = w->walled + a, *q = w->walled + b;
     const dem_real gone = (dem_real)(w->margin.gone + w->margin.walls_gone);
     const dem_real apart = demi_length(to) -
-        DEM_R(0.999)*(w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3]);
+        DEM_R(0.999)*(demi_radius(w, a) + demi_radius(w, b));
     const dem_real both = DEMI_MAX(apart, DEM_R(0))/2 + gone;
     const dem_real one = w->effects.scales ? both : DEMI_MIN(both, apart - demi_cover(w) + 2*gone);
     const dem_real gap = q->gap < DEMI_ONLY_SHEET ? both : one;
@@ -17072,7 +17075,7 @@ static void demi_effects(dem_world *w) {
     w->effects.fixed_count = 0;
     w->effects.radius_min = w->effects.radius_max = w->bodies.count ? w->bodies.pos[3] : 0;
     for (i = 0; i < w->bodies.count; i++) {
-        const dem_real r = w->bodies.pos[4*i + 3];
+        const dem_real r = demi_radius(w, i);
         w->effects.radius_min = DEMI_MIN(w->effects.radius_min, r);
         w->effects.radius_max = DEMI_MAX(w->effects.radius_max, r);
         w->effects.fixed_count += w->bodies.inv_mass[i] <= 0;
@@ -17239,7 +17242,7 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
     const dem_vec3 x = demi_nearest(p, demi_sub(demi_at(w->bodies.pos + 4*b),
                                                 demi_at(w->bodies.pos + 4*a)));
     const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
-    return demi_length(x) < w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3] +
+    return demi_length(x) < demi_radius(w, a) + demi_radius(w, b) +
            (dem_real)(w->margin.reach + w->margin.slack) +
                             (dem_real)w->margin.span*demi_length(u);
 }
@@ -17254,7 +17257,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     w->domains[last].end = i + 1;
     if (demi_response_is(w, DEMI_MIDWAY)) w->margin.gone += w->margin.step_gone/2;
     if (count >= w->join_room || demi_scale_missing(w, i) ||
-        w->bodies.pos[4*i + 3] > w->effects.radius_max)
+        demi_radius(w, i) > w->effects.radius_max)
         return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
@@ -17275,7 +17278,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     if (w->sheeted) demi_walled_add(w, last*w->wall_stride + walls,
                                     last*w->wall_stride + w->domains[last].walls);
     demi_quiet_at(w, last, i)->restless = 2;
-    w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
+    w->effects.radius_min = DEMI_MIN(w->effects.radius_min, demi_radius(w, i));
     return 1;
 }
 
@@ -22708,7 +22711,7 @@ DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lamb
 /* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
 DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
                                       int body, const demi_shape *shape) {
-    const dem_real radius = w->bodies.pos[4*body + 3], scale = shape ? radius/shape->radius : 0;
+    const dem_real radius = demi_radius(w, body), scale = shape ? radius/shape->radius : 0;
     t->equal[side][k] = (double)(shape ? shape->equal*scale : radius);
     if (!shape)
         return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
@@ -22736,7 +22739,7 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
     for (; p < end && t->count < DEMI_EGGS; p++) {
         const int a = w->near.a[base + p], b = w->near.b[base + p];
         const dem_vec3 r = demi_near_bodies_way(w, (size_t)(base + p));
-        const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
+        const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
         const dem_real far = radii + (dem_real)w->margin.reach;
         const demi_shape *one, *other;
         dem_real thin;
@@ -22824,7 +22827,7 @@ static int demi_flush_is(const dem_world *w, int i) {
 }
 /* Sets the box of body i: middle and half widths, m, a little wider than the body. */
 static void demi_flush_box(const dem_world *w, int i, double *middle, double *half) {
-    const double hair = 1e-3*(double)w->bodies.pos[4*i + 3];
+    const double hair = 1e-3*(double)demi_radius(w, i);
     int k;
     for (k = 0; k < 3; k++) {
         const dem_vec3 n = demi_v(k == 0, k == 1, k == 2);
@@ -22963,7 +22966,7 @@ static int demi_flush_add(dem_world *w, int i) {
     b->first = f->piece_count;
     b->count = demi_parts_count(w, i);
     b->at = demi_at(w->bodies.pos + 4*i);
-    b->radius = w->bodies.pos[4*i + 3];
+    b->radius = demi_radius(w, i);
     if (!DEMI_GROW(w, f->pieces, (size_t)(f->piece_count + b->count))) return 0;
     for (k = 0; k < b->count; k++) {
         demi_flush_piece *piece = &f->pieces[f->piece_count++];
@@ -24147,7 +24150,7 @@ DEM_INLINE int demi_kept_two(dem_world *w, int d, int a, int b, int send, int i,
    at any step during the life of that list: bounds for its whole life cover the rest of it. */
 static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const dem_real *x, int na,
                             const dem_real *y, int nb, demi_near_balls *out) {
-    const dem_real cut = demi_near_cut(w, a, b), far_b = w->bodies.pos[4*b + 3] + cut;
+    const dem_real cut = demi_near_cut(w, a, b), far_b = demi_radius(w, b) + cut;
     int i, j;
     out->count = na > 256 || nb > 256 ? DEMI_BALLS_ALL : 0;
     for (i = 0; i < na && out->count != DEMI_BALLS_ALL; i++) {
@@ -24170,7 +24173,7 @@ static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const 
 static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, const dem_real *x,
                            int na, const dem_real *y, int nb, const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
-    const dem_real far_b = w->bodies.pos[4*b + 3] + (dem_real)w->margin.reach;
+    const dem_real far_b = demi_radius(w, b) + (dem_real)w->margin.reach;
     demi_near_balls *some = w->near.balls + at;
     int i, j, k;
     if (some->count == DEMI_BALLS_UNKNOWN) demi_balls_near(w, a, b, r, x, na, y, nb, some);
@@ -24195,7 +24198,7 @@ static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, co
 static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
                          const demi_kept *old, int olds) {
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
-    const dem_real rb = w->bodies.pos[4*b + 3] + (dem_real)w->margin.reach;
+    const dem_real rb = demi_radius(w, b) + (dem_real)w->margin.reach;
     int i, j;
     for (i = 0; i < na; i++) {
         const demi_part p = demi_part_now(w, a, i);
@@ -24241,7 +24244,7 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, con
                                       int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
     const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
-    const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
+    const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
     const dem_real far = radii + (dem_real)w->margin.reach;
     const demi_kept *now = demi_kept_of(w, d);
     demi_kept *from = w->kept_next + w->kept_first[d] + first;
@@ -26065,8 +26068,8 @@ static void demi_impulses_meet(dem_world *w, int d) {
         const int a = w->near.a[at], b = w->near.b[at];
         dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
         const dem_vec3 way = demi_near_way(w, at);
-        const dem_real l2 = demi_dot(way, way), radii = w->bodies.pos[4*a + 3] +
-            w->bodies.pos[4*b + 3], most = radii + demi_range(w, radii);
+        const dem_real l2 = demi_dot(way, way), radii = demi_radius(w, a) +
+            demi_radius(w, b), most = radii + demi_range(w, radii);
         if (l2 > 0 && l2 <= most*most && s->movers[a].inv + s->movers[b].inv > 0 &&
             !demi_joined(w, a, b, -1)) {
             m->a = a;
@@ -26189,7 +26192,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
     if (!k) {
         const size_t stride = (size_t)w->near.stride;
         const dem_vec3 way = demi_near_way(w, (size_t)d*stride + (size_t)m->home);
-        const dem_real ra = w->bodies.pos[4*m->a + 3], rb = w->bodies.pos[4*m->b + 3];
+        const dem_real ra = demi_radius(w, m->a), rb = demi_radius(w, m->b);
         const dem_real l = demi_length(way);
         o.normal = demi_scale(way, 1/l);
         o.gap = l - ra - rb;
@@ -26206,8 +26209,8 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
         o.arm_a = k->arm_a;
         o.arm_b = k->arm_b;
         o.r_eff = k->r_eff;
-        o.size = w->bodies.pos[4*k->a + 3];
-        if (k->b >= 0) o.size = DEMI_MIN(o.size, w->bodies.pos[4*k->b + 3]);
+        o.size = demi_radius(w, k->a);
+        if (k->b >= 0) o.size = DEMI_MIN(o.size, demi_radius(w, k->b));
         o.material = k->b < 0 ? w->walls[k->wall].material : w->bodies.material[k->b] - 1;
         o.memory = k->memory;
         o.stride = 1;
@@ -26813,8 +26816,8 @@ static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real
    bodies. It also limits how far a gap is closed in a step; gaps are larger only after the user has
    moved a body. */
 static dem_real demi_rod_size(const dem_world *w, const demi_rod *r) {
-    const dem_real a = w->bodies.pos[4*r->a + 3];
-    return r->b < w->bodies.count ? DEMI_MIN(a, w->bodies.pos[4*r->b + 3]) : a;
+    const dem_real a = demi_radius(w, r->a);
+    return r->b < w->bodies.count ? DEMI_MIN(a, demi_radius(w, r->b)) : a;
 }
 /* True if row k of a joint is in force. Planar worlds have no tilt; a motor at its limit is a
    torque instead of a row. */
@@ -27367,7 +27370,7 @@ static double demi_joints_shift(dem_world *w) {
         o[0] = q.w; o[1] = q.x; o[2] = q.y; o[3] = q.z;
         demi_force_add(w->bodies.last_pos + 4*k->mover, way);
         farthest = DEMI_MAX(farthest, (double)(demi_length(way) + demi_length(turn)*
-                                               w->bodies.pos[4*k->mover + 3]));
+                                               demi_radius(w, k->mover)));
     }
     return farthest;
 }
@@ -28881,7 +28884,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
         c->size[k] = (double)c->p.period[k];
     }
     for (i = 0; i < w->bodies.count; i++) {
-        const dem_real r = w->bodies.pos[4*i + 3];
+        const dem_real r = demi_radius(w, i);
         const dem_vec3 d = demi_nearest(&c->p, demi_sub(demi_at(w->bodies.pos + 4*i), mid));
         /* 0.1 % more, so that rounding does not lose a neighbour */
         const double s = 1.001*(double)(r + radius);
@@ -29310,7 +29313,7 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
         marks[w->bodies.slot_index[b.slot - 1]] = 1;
     }
     for (i = 0; i < w->bodies.count; i++) {
-        const dem_real r = w->bodies.pos[4*i + 3];
+        const dem_real r = demi_radius(w, i);
         marks[i] = marks[i] && demi_in_group(w, s->group, i) &&
             (!s->material.id || w->bodies.material[i] == s->material.id) &&
             (!s->shape.id || (w->bodies.orienting && w->bodies.shape[i] == s->shape.id)) &&
@@ -29421,7 +29424,7 @@ DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_select
         if (i < 0 || !marks[i]) continue;
         demi_put(x, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
         out->mass += m;
-        out->radius += (double)w->bodies.pos[4*i + 3];
+        out->radius += (double)demi_radius(w, i);
         for (k = 0; k < 3; k++) {
             const double v = (double)w->bodies.vel[4*i + k];
             out->centre[k] += m*(double)x[k];
@@ -29896,7 +29899,7 @@ static int demi_outlet_class(const dem_outlet_desc *d, dem_real r) {
 /* Counts grain i: in its class, and as wanted or not. */
 static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     const dem_outlet_desc *d = &o->desc;
-    const dem_real r = w->bodies.pos[4*i + 3];
+    const dem_real r = demi_radius(w, i);
     const double m = (double)w->bodies.mass[i];
     const int k = demi_outlet_class(d, r);
     const int wanted = r >= d->wanted_min && (!(d->wanted_max > 0) || r <= d->wanted_max);
@@ -29951,7 +29954,7 @@ static int demi_outlet_sees(const dem_world *w, const demi_periods *p, const dem
    if it is in the region now. The first look at a grain counts nothing. */
 static void demi_outlet_count(dem_world *w, demi_outlet *o, int i, int in) {
     const uint32_t bit = 1u << o->zone, known = bit << DEMI_ZONES, before = w->bodies.zones[i];
-    const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
+    const int k = demi_outlet_class(&o->desc, demi_radius(w, i));
     if (before & known) {
         if (in && !(before & bit)) demi_outlet_book(w, o, i);
         if (!in && (before & bit)) {
@@ -29999,7 +30002,7 @@ DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_
     if (!o) return DEM_ERROR_ARGUMENT;
     *state = o->state;
     for (i = 0; i < w->bodies.count && o->zone >= 0; i++) {
-        const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
+        const int k = demi_outlet_class(&o->desc, demi_radius(w, i));
         const double m = (double)w->bodies.mass[i];
         if (!demi_outlet_sees(w, &p, o, i)) continue;
         state->held[k]++;
@@ -30421,7 +30424,7 @@ static void demi_rail_given(const dem_world *w, demi_rail *r, int i) {
     demi_put(now, x);
     demi_put(at, demi_rail_place(w, r, i));
     for (k = 0; k < 3; k++)                     /* wrapping leaves a rounding error */
-        if (DEMI_ABS(by[k]) > DEM_R(1e-6)*w->bodies.pos[4*i + 3]) at[k] = now[k];
+        if (DEMI_ABS(by[k]) > DEM_R(1e-6)*demi_radius(w, i)) at[k] = now[k];
     r->at = demi_at(at);
 }
 /* Returns the index of the wall that a rail follows; -1 if there is none. */
@@ -30864,7 +30867,7 @@ static dem_result demi_member_grow(dem_world *w) {
     demi_finish(w);                             /* the function receives complete velocities, */
     for (i = 0; i < n && result == DEM_OK; i++) {   /* and the open half kick the old masses */
         const dem_body id = dem_body_id_get(w, i);
-        const dem_real r = radius[i] = w->bodies.pos[4*i + 3];
+        const dem_real r = radius[i] = demi_radius(w, i);
         dem_body_state state;
         dem_real rate;
         if (demi_is_ghost(w, i) || dem_body_get(w, id, &state) != DEM_OK) continue;
@@ -30883,7 +30886,7 @@ static dem_result demi_member_grow(dem_world *w) {
         if (!demi_list_drop(w)) result = demi_no_memory(w, "dem_world_step");
     }
     for (i = 0; i < n && result == DEM_OK && grown; i++)
-        if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
+        if ((radius[i] < demi_radius(w, i) || radius[i] > demi_radius(w, i)) &&
             !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
     demi_free(w, radius);
     w->grown = grown;
@@ -30947,7 +30950,7 @@ static double demi_advise_shape(const dem_world *w, const demi_shape *shape, dou
 }
 static double demi_advise_radius(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
-    const double r = (double)w->bodies.pos[4*body + 3];
+    const double r = (double)demi_radius(w, body);
     return shape ? demi_advise_shape(w, shape, (double)shape->equal*(r/(double)shape->radius)) : r;
 }
 /* Returns the largest step, s, at which velocity Verlet with predicted velocities integrates
@@ -31005,7 +31008,7 @@ static void demi_grades_add(const dem_world *w, demi_grades *g) {
     for (i = 0; i < w->bodies.count; i++) {
         const int m = w->bodies.material[i] - 1;
         const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
-        const double r = (double)w->bodies.pos[4*i + 3], equal = demi_advise_radius(w, i);
+        const double r = (double)demi_radius(w, i), equal = demi_advise_radius(w, i);
         if (demi_is_ghost(w, i)) continue;
         g->bodies++;
         g->speed = DEMI_MAX(g->speed, (double)demi_length(demi_at(w->bodies.vel + 4*i)));
@@ -31222,19 +31225,19 @@ typedef struct demi_pressed {
 static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, double f,
                            double arm, demi_press *p) {
     const double m = (double)w->bodies.mass[body];
-    const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
+    const double I = demi_sphere_inertia(w, m, (double)demi_radius(w, body));
     if (w->bodies.inv_mass[body] <= 0) return;
     p->contacts += (double)c->weight;
     if (!(c->weight > 0)) return;
     p->omega2 += f*DEMI_MAX(c->s.k/m, c->s.kt*(1/m + arm*arm/I) + c->s.kr/I);
     p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
-    p->deepest = DEMI_MAX(p->deepest, c->overlap/w->bodies.pos[4*body + 3]);
+    p->deepest = DEMI_MAX(p->deepest, c->overlap/demi_radius(w, body));
 }
 /* Adds a contact to a body's matrices, for the close bound. */
 static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, double f,
                                  double arm, demi_press_whole *p) {
     const double m = (double)w->bodies.mass[body];
-    const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
+    const double I = demi_sphere_inertia(w, m, (double)demi_radius(w, body));
     const double n[3] = {(double)c->n.x, (double)c->n.y, (double)c->n.z};
     int i, j, e = 0, d;
     if (w->bodies.inv_mass[body] <= 0) return;
@@ -31293,8 +31296,8 @@ static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_con
     c->wall = b >= 0 ? 0 : w->walls[wall].id;
     c->who.a = dem_body_id_get(w, a);
     if (b >= 0) c->who.b = dem_body_id_get(w, b);
-    c->who.radius_a = w->bodies.pos[4*a + 3];
-    c->who.radius_b = b >= 0 ? w->bodies.pos[4*b + 3] : 0;
+    c->who.radius_a = demi_radius(w, a);
+    c->who.radius_b = b >= 0 ? demi_radius(w, b) : 0;
     c->who.mass_a = w->bodies.mass[a];
     c->who.mass_b = b >= 0 ? w->bodies.mass[b] : 0;
     c->who.time = w->clock.time;
@@ -31375,7 +31378,7 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
         for (p = 0; p < domain->kept; p++) {
             const demi_kept *k = demi_kept_of(w, d) + p;
             const int i = k->a;
-            const double arm = (double)w->bodies.pos[4*i + 3];
+            const double arm = (double)demi_radius(w, i);
             dem_real coef[DEMI_COEFS], root[2];
             demi_pressed c;
             if (!(k->overlap > 0) || k->b >= 0 || demi_shape_of(w, i) ||
@@ -32562,7 +32565,7 @@ static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const 
 }
 /* True if the field includes body i, by group, material and radius. */
 static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i) {
-    const dem_real r = w->bodies.pos[4*i + 3];
+    const dem_real r = demi_radius(w, i);
     return demi_in_group(w, d->group, i) &&
            (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
            (!(d->radius_max > 0) || r <= d->radius_max);
@@ -33424,7 +33427,7 @@ static int demi_events_note(dem_world *w) {
         const dem_real *y = c.own ? c.own->memory
             : w->near.memory + (size_t)c.d*DEMI_IMPULSE_REALS*step + c.entry;
         const dem_real *lost = y + DEMI_IMPULSE_LOST*step;
-        const dem_real ra = w->bodies.pos[4*c.a + 3];
+        const dem_real ra = demi_radius(w, c.a);
         const int wall = c.b < 0;
         double energy[DEMI_E_ROLL + 1] = {0};
         demi_noted_at *at;
@@ -33436,7 +33439,7 @@ static int demi_events_note(dem_world *w) {
         if (!at) continue;
         at->normal = c.info.normal;
         at->arm = c.own ? c.own->arm_a
-            : demi_note_arm(at->normal, ra, demi_length(c.branch), ra + w->bodies.pos[4*c.b + 3]);
+            : demi_note_arm(at->normal, ra, demi_length(c.branch), ra + demi_radius(w, c.b));
         at->shift = wall ? c.own->shift : demi_v(0, 0, 0);
     }
     demi_events_take(w);
@@ -33892,7 +33895,7 @@ static void demi_domain_clear(dem_world *w, int d) {
         const dem_vec3 v = demi_field_rate(w, w->bodies.vel, w->bodies.half_vel, i);
         dem_vec3 f;
         DEMI_USER(w, "a step", 1, f = w->desc.force(demi_at(w->bodies.pos + 4*i), v,
-                                                    w->bodies.pos[4*i + 3], w->bodies.mass[i],
+                                                    demi_radius(w, i), w->bodies.mass[i],
                                                     demi_field_time(w), w->desc.force_user))
         demi_put(w->bodies.force + 4*i, f);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
@@ -34706,7 +34709,7 @@ static double demi_calm(const dem_world *w, double speed, double *look) {
     int i;
     if (w->bodies.count) radius = 0;
     for (i = 0; i < w->bodies.count; i++)
-        radius += (double)w->bodies.pos[4*i + 3]/w->bodies.count;
+        radius += (double)demi_radius(w, i)/w->bodies.count;
     if (!(speed > 0) && g > 0) speed = 0.01*sqrt(2*g*radius);
     *look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(speed, 1e-300);
     return speed;
@@ -35085,7 +35088,7 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
     for (i = 0; i < w->bodies.count; i++)       /* parts meet, not their bodies */
         for (k = demi_parts_count(w, i) - 1; k >= 0; k--) {
             const double r = demi_shape_of(w, i) ? (double)demi_part_of(w, i, k).radius
-                : (double)w->bodies.pos[4*i + 3];
+                : (double)demi_radius(w, i);
             if (least < 0 || r < least) least = r;
         }
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
@@ -35308,7 +35311,7 @@ static int32_t demi_heap_of(int32_t *root, int32_t i) {
    radius. */
 static void demi_heap_join(const dem_world *w, const demi_tree *tree, int i, double most,
                            int32_t *root) {
-    const double r = (double)w->bodies.pos[4*i + 3];
+    const double r = (double)demi_radius(w, i);
     const demi_periods p = demi_periods_of(w);
     demi_search_line line;
     double x[3];
@@ -35323,7 +35326,7 @@ static void demi_heap_join(const dem_world *w, const demi_tree *tree, int i, dou
         if (!use) continue;
         demi_tree_line(&line, tree, x, x, 1.25*(r + most));
         while ((other = demi_tree_next(&line)) >= 0) {
-            const double reach = 1.25*(r + (double)w->bodies.pos[4*other + 3]);
+            const double reach = 1.25*(r + (double)demi_radius(w, other));
             if (root[other] < 0 || !(demi_far2(x, tree->x + 3*other) < reach*reach)) continue;
             other = demi_heap_of(root, other);
             k = demi_heap_of(root, i);
@@ -35347,7 +35350,7 @@ static int demi_heaps(dem_world *w, dem_box box, demi_surface *s) {
         const dem_vec3 at = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
         x[3*i] = (double)at.x; x[3*i + 1] = (double)at.y; x[3*i + 2] = (double)at.z;
         s->root[i] = demi_repose_sees(w, box, i, at) ? i : -1;
-        most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
+        most = DEMI_MAX(most, (double)demi_radius(w, i));
     }
     ok = x && mass && s->root && demi_tree_make(w, &tree, x, n);
     for (i = 0; i < n && ok; i++) if (s->root[i] >= 0) demi_heap_join(w, &tree, i, most, s->root);
@@ -35376,7 +35379,7 @@ static double demi_surface_place(const dem_world *w, const demi_surface *s, int 
         : across - n*floor(across/n);
     *row = floor((far - s->from)/s->width);
     *column = DEMI_MIN(DEMI_MAX((int)at, 0), s->columns - 1);
-    return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
+    return (double)demi_dot(d, s->up) + (double)demi_radius(w, i);
 }
 /* Returns the centre of mass (m) of the heap, also if it extends across periodic faces. Along a
    periodic axis, positions are mapped to a circle; the mean direction on it gives a point in the
@@ -35419,8 +35422,8 @@ static int demi_surface_look(dem_world *w, demi_surface *s) {
         double h;
         if (s->root[i] != s->heap) continue;
         h = demi_surface_place(w, s, i, &row, &column);
-        lowest = DEMI_MIN(lowest, h - 2*(double)w->bodies.pos[4*i + 3]);
-        diameter += 2*(double)w->bodies.pos[4*i + 3];
+        lowest = DEMI_MIN(lowest, h - 2*(double)demi_radius(w, i));
+        diameter += 2*(double)demi_radius(w, i);
         count++;
     }
     if (!count) return 1;
@@ -35547,7 +35550,7 @@ DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
         if (b < 0) continue;
         /* positions inside the periodic box, where the next rebuild of the list puts them */
         demi_put(x, demi_place_of(&p, demi_at(w->bodies.pos + 4*b)));
-        x[3] = w->bodies.pos[4*b + 3];
+        x[3] = demi_radius(w, b);
         h = demi_hash(h, &i, sizeof i);
         h = demi_hash(h, x, sizeof x);
         h = demi_hash(h, w->bodies.vel + 4*b, 3*sizeof(dem_real));
@@ -35753,7 +35756,7 @@ static int demi_mix_cell(const dem_world *w, const demi_periods *p, const dem_mi
 }
 /* True if body i is of the component. */
 static int demi_mix_mine(const dem_world *w, const dem_mixing_desc *d, int i) {
-    const dem_real r = w->bodies.pos[4*i + 3];
+    const dem_real r = demi_radius(w, i);
     return (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
         (!(d->radius_max > 0) || r <= d->radius_max);
 }
@@ -39173,7 +39176,7 @@ DEM_API dem_result dem_bodies_csv_write(dem_world *world, const char *path) {
               "fx_variance,fy_variance,fz_variance", o.file);
     fputc('\n', o.file);
     for (i = 0; i < w->bodies.count; i++) {
-        const double radius = (double)w->bodies.pos[4*i + 3];
+        const double radius = (double)demi_radius(w, i);
         dem_body_means m;
         fprintf(o.file, "%u,%d", (unsigned)w->bodies.slot[i], (int)w->bodies.material[i]);
         demi_table_put(&o, 0, &radius, 1);
@@ -39957,7 +39960,7 @@ static int demi_bodies_sane(const demi_reader *r) {
     int i, k, shaped = 0, unlike = 0;
     if (lost >= 0) return demi_lie(r, "state of body", lost);
     for (i = 0; i < t->bodies.count; i++) {
-        if (!(t->bodies.pos[4*i + 3] > 0) ||
+        if (!(demi_radius(t, i) > 0) ||
             !demi_sane((double)t->bodies.mass[i], 0) || !(t->bodies.mass[i] > 0) ||
             !demi_sane((double)t->bodies.inv_mass[i], 0) ||
                 !demi_sane((double)t->bodies.inv_inertia[i], 0))
@@ -40755,8 +40758,8 @@ static dem_result demi_output_walls(dem_world *w, const dem_output_desc *d, cons
         z0 = (dem_real)DEMI_FARTHEST;
         z1 = -z0;
         for (i = 0; i < w->bodies.count; i++) {
-            z0 = DEMI_MIN(z0, w->bodies.pos[4*i + 2] - w->bodies.pos[4*i + 3]);
-            z1 = DEMI_MAX(z1, w->bodies.pos[4*i + 2] + w->bodies.pos[4*i + 3]);
+            z0 = DEMI_MIN(z0, w->bodies.pos[4*i + 2] - demi_radius(w, i));
+            z1 = DEMI_MAX(z1, w->bodies.pos[4*i + 2] + demi_radius(w, i));
         }
     }
     return dem_walls_vtp_write(w, path, z0 < z1 ? z0 : 0, z0 < z1 ? z1 : 1);
@@ -41107,8 +41110,8 @@ static void demi_radii_of(const dem_world *w, double *least, double *most) {
     *least = 1e300;
     *most = 0;
     for (i = 0; i < w->bodies.count; i++) {
-        *least = DEMI_MIN(*least, (double)w->bodies.pos[4*i + 3]);
-        *most = DEMI_MAX(*most, (double)w->bodies.pos[4*i + 3]);
+        *least = DEMI_MIN(*least, (double)demi_radius(w, i));
+        *most = DEMI_MAX(*most, (double)demi_radius(w, i));
     }
 }
 static void demi_check_radii(const dem_world *w, demi_findings *f) {
@@ -41132,7 +41135,7 @@ static void demi_check_digits(const dem_world *w, demi_findings *f) {
     for (i = 0; i < w->bodies.count; i++)
         for (k = 0; k < 3; k++) {
             const double part =
-                fabs((double)w->bodies.pos[4*i + k])/(double)w->bodies.pos[4*i + 3]*digit;
+                fabs((double)w->bodies.pos[4*i + k])/(double)demi_radius(w, i)*digit;
             if (!(part > worst)) continue;
             worst = part;
             body = i;
@@ -41321,7 +41324,7 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
             const int from = d*list->stride, n = cross ? w->domains[d].cross : w->domains[d].own;
             for (k = from; k < from + n; k++) {
                 const int a = list->a[k], b = list->b[k];
-                const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
+                const dem_real r = DEMI_MIN(demi_radius(w, a), demi_radius(w, b));
                 const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
                                                               list->image[k], r)/r);
                 if (!(deep > 0.01) || demi_parted(w, a, b, -1) ||
@@ -41704,7 +41707,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
     for (i = 0; i < w->bodies.count; i++) {
         if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
         for (k = 0; k < 3; k++) {
-            const double x = (double)w->bodies.pos[4*i + k], r = (double)w->bodies.pos[4*i + 3];
+            const double x = (double)w->bodies.pos[4*i + k], r = (double)demi_radius(w, i);
             lo[k] = DEMI_MIN(lo[k], x - r);
             hi[k] = DEMI_MAX(hi[k], x + r);
         }
@@ -41917,7 +41920,7 @@ static void demi_try_shake(dem_world *t, uint64_t seed) {
     int i, k;
     for (i = 0; i < t->bodies.count && seed; i++)
         for (k = 0; k < (t->desc.planar ? 2 : 3) && t->bodies.inv_mass[i] > 0; k++)
-            t->bodies.pos[4*i + k] += t->bodies.pos[4*i + 3]*
+            t->bodies.pos[4*i + k] += demi_radius(t, i)*
                 (dem_real)(1e-6*(2*demi_uniform(&seed) - 1));
 }
 /* Runs the copy t and adds the means of the observables over the second half of the run to sum. The
@@ -42116,7 +42119,7 @@ static void demi_usual_scales(const dem_world *w, dem_trials *out) {
     double lowest = 1e300, fall = 0;
     int i;
     for (i = 0; i < w->bodies.count; i++) {
-        const double r = (double)w->bodies.pos[4*i + 3];
+        const double r = (double)demi_radius(w, i);
         if (!(w->bodies.inv_mass[i] > 0)) continue;
         lowest = DEMI_MIN(lowest, (double)demi_dot(demi_at(w->bodies.pos + 4*i), up) - r);
         fall += (double)w->bodies.mass[i]*g*r;
@@ -42336,7 +42339,7 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
         if (w->desc.force)
             DEMI_USER(w, "a report of effects", 1,
                       force = demi_add(force, w->desc.force(
-                          body.position, body.velocity, w->bodies.pos[4*i + 3],
+                          body.position, body.velocity, demi_radius(w, i),
                           w->bodies.mass[i], w->clock.time, w->desc.force_user)))
         pushed += demi_dot(force, force) > 0 || demi_dot(torque, torque) > 0;
     }
@@ -43596,7 +43599,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
             sums[1] += w->domains[d].contacts;
         }
         for (i = 0; i < w->bodies.count; i++) {
-            const double r = (double)w->bodies.pos[4*i + 3];
+            const double r = (double)demi_radius(w, i);
             if (demi_is_ghost(w, i)) continue;
             sums[2]++;
             radii[0] = DEMI_MAX(radii[0], r);
@@ -43723,7 +43726,7 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
         return;
     }
     for (i = 0; i < w->bodies.count; i++) {
-        const double x = (double)w->bodies.pos[4*i + s->axis], r = (double)w->bodies.pos[4*i + 3];
+        const double x = (double)w->bodies.pos[4*i + s->axis], r = (double)demi_radius(w, i);
         if (!(x + s->cut - (double)s->head.effects.radius_max +
               r > s->borders[b->index + 1])) continue;
         w->bodies.ghost[w->bodies.slot[i]] = DEMI_GHOST_ABOVE;

@@ -97,7 +97,7 @@ static int demi_centres_lay(dem_world *w) {
         if (!demi_lone(w, i)) who[count++] = i;
         else {
             lone[0] = lone[1] = lone[2] = 0;
-            lone[3] = w->bodies.pos[4*i + 3];
+            lone[3] = demi_radius(w, i);
         }
         if (count == DEMI_TILE || i + 1 == w->bodies.count) {
             demi_centres_rotate(w, who, count);

@@ -89,7 +89,7 @@ static const dem_real *demi_wrapped(const dem_world *w) {
     if (!p.any) return w->bodies.pos;
     for (i = 0; i < w->bodies.count; i++) {
         demi_put(w->bodies.scratch + 4*i, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
-        w->bodies.scratch[4*i + 3] = w->bodies.pos[4*i + 3];
+        w->bodies.scratch[4*i + 3] = demi_radius(w, i);
     }
     return w->bodies.scratch;
 }
@@ -640,7 +640,7 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
     s->spin = demi_at(w->bodies.spin + 4*i);
     s->force = demi_at(w->bodies.force + 4*i);
     s->torque = demi_at(w->bodies.torque + 4*i);
-    s->radius = w->bodies.pos[4*i + 3];
+    s->radius = demi_radius(w, i);
     s->mass = w->bodies.mass[i];
     s->moments = demi_moments_of(w, i);
     s->reals = w->bodies.real_count ? w->bodies.reals + w->bodies.real_count*i : 0;
@@ -680,7 +680,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (w->desc.planar) w->bodies.pos[4*i + 2] = 0;
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
-        (double)w->bodies.pos[4*i + 3]));
+        (double)demi_radius(w, i)));
     if (w->bodies.orienting)
         demi_quat_put(w->bodies.orient + 4*i,
                       demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)

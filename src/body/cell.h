@@ -58,7 +58,7 @@ static double demi_cell_speed(const dem_world *w) {
     double radius = 0;
     int i;
     for (i = 0; i < w->bodies.count; i++)
-        radius = DEMI_MAX(radius, (double)w->bodies.pos[4*i + 3]);
+        radius = DEMI_MAX(radius, (double)demi_radius(w, i));
     return 2*radius*norm;
 }
 /* Adds a contact to the virial. force: N, on a. */

@@ -521,12 +521,12 @@ DEM_INLINE int demi_lone(const dem_world *w, int body) {
     return !shape || (shape->lone && demi_response_is(w, DEMI_PRESSING));
 }
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
-    return w->bodies.pos[4*body + 3]/shape->radius;
+    return demi_radius(w, body)/shape->radius;
 }
 /* Principal moments: precomputed per mass and scale for shapes, analytic for spheres and discs. */
 static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2, principal */
     const demi_shape *shape = demi_shape_of(w, body);
-    const double m = (double)w->bodies.mass[body], r = (double)w->bodies.pos[4*body + 3];
+    const double m = (double)w->bodies.mass[body], r = (double)demi_radius(w, body);
     dem_real one;
     if (shape) {
         one = demi_scale_of(w, body, shape);
@@ -551,7 +551,7 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
     dem_real scale, far = -1;
     dem_vec3 e;
     int i;
-    if (!shape) return w->bodies.pos[4*body + 3];
+    if (!shape) return demi_radius(w, body);
     scale = demi_scale_of(w, body, shape);
     e = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), n);
     for (i = 0; i < shape->pieces; i++) {
@@ -738,7 +738,7 @@ static int demi_parts_count(const dem_world *w, int body) {
 DEM_INLINE void demi_part_single(const dem_world *w, int body, const demi_shape *shape,
                                  demi_part *p) {
     p->kind = shape->kind;
-    p->radius = w->bodies.pos[4*body + 3];
+    p->radius = demi_radius(w, body);
     p->centre = demi_v(0, 0, 0);
     p->scale = demi_scale_of(w, body, shape);
     p->axes = demi_scale(shape->axes, p->scale);
@@ -768,7 +768,7 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
     }
     memset(&p, 0, sizeof p);
     p.kind = DEMI_BALL;
-    p.radius = w->bodies.pos[4*body + 3];
+    p.radius = demi_radius(w, body);
     return p;
 }
 /* Returns the rotated spheres of a cluster: rows of centre (from the body's) and radius, m. */
@@ -862,7 +862,7 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
                                 dem_real enough) {
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                          demi_at(w->bodies.pos + 4*a)), demi_at(shift));
-    const dem_real d = demi_length(r), rb = w->bodies.pos[4*b + 3];
+    const dem_real d = demi_length(r), rb = demi_radius(w, b);
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
     dem_real least = enough;
     int i, j;

@@ -130,7 +130,7 @@ DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lamb
 /* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
 DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
                                       int body, const demi_shape *shape) {
-    const dem_real radius = w->bodies.pos[4*body + 3], scale = shape ? radius/shape->radius : 0;
+    const dem_real radius = demi_radius(w, body), scale = shape ? radius/shape->radius : 0;
     t->equal[side][k] = (double)(shape ? shape->equal*scale : radius);
     if (!shape)
         return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
@@ -158,7 +158,7 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
     for (; p < end && t->count < DEMI_EGGS; p++) {
         const int a = w->near.a[base + p], b = w->near.b[base + p];
         const dem_vec3 r = demi_near_bodies_way(w, (size_t)(base + p));
-        const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
+        const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
         const dem_real far = radii + (dem_real)w->margin.reach;
         const demi_shape *one, *other;
         dem_real thin;

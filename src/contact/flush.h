@@ -28,7 +28,7 @@ static int demi_flush_is(const dem_world *w, int i) {
 }
 /* Sets the box of body i: middle and half widths, m, a little wider than the body. */
 static void demi_flush_box(const dem_world *w, int i, double *middle, double *half) {
-    const double hair = 1e-3*(double)w->bodies.pos[4*i + 3];
+    const double hair = 1e-3*(double)demi_radius(w, i);
     int k;
     for (k = 0; k < 3; k++) {
         const dem_vec3 n = demi_v(k == 0, k == 1, k == 2);
@@ -167,7 +167,7 @@ static int demi_flush_add(dem_world *w, int i) {
     b->first = f->piece_count;
     b->count = demi_parts_count(w, i);
     b->at = demi_at(w->bodies.pos + 4*i);
-    b->radius = w->bodies.pos[4*i + 3];
+    b->radius = demi_radius(w, i);
     if (!DEMI_GROW(w, f->pieces, (size_t)(f->piece_count + b->count))) return 0;
     for (k = 0; k < b->count; k++) {
         demi_flush_piece *piece = &f->pieces[f->piece_count++];

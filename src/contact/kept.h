@@ -340,7 +340,7 @@ DEM_INLINE int demi_kept_two(dem_world *w, int d, int a, int b, int send, int i,
    at any step during the life of that list: bounds for its whole life cover the rest of it. */
 static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const dem_real *x, int na,
                             const dem_real *y, int nb, demi_near_balls *out) {
-    const dem_real cut = demi_near_cut(w, a, b), far_b = w->bodies.pos[4*b + 3] + cut;
+    const dem_real cut = demi_near_cut(w, a, b), far_b = demi_radius(w, b) + cut;
     int i, j;
     out->count = na > 256 || nb > 256 ? DEMI_BALLS_ALL : 0;
     for (i = 0; i < na && out->count != DEMI_BALLS_ALL; i++) {
@@ -363,7 +363,7 @@ static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const 
 static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, const dem_real *x,
                            int na, const dem_real *y, int nb, const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
-    const dem_real far_b = w->bodies.pos[4*b + 3] + (dem_real)w->margin.reach;
+    const dem_real far_b = demi_radius(w, b) + (dem_real)w->margin.reach;
     demi_near_balls *some = w->near.balls + at;
     int i, j, k;
     if (some->count == DEMI_BALLS_UNKNOWN) demi_balls_near(w, a, b, r, x, na, y, nb, some);
@@ -388,7 +388,7 @@ static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, co
 static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
                          const demi_kept *old, int olds) {
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
-    const dem_real rb = w->bodies.pos[4*b + 3] + (dem_real)w->margin.reach;
+    const dem_real rb = demi_radius(w, b) + (dem_real)w->margin.reach;
     int i, j;
     for (i = 0; i < na; i++) {
         const demi_part p = demi_part_now(w, a, i);
@@ -434,7 +434,7 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, con
                                       int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
     const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
-    const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
+    const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
     const dem_real far = radii + (dem_real)w->margin.reach;
     const demi_kept *now = demi_kept_of(w, d);
     demi_kept *from = w->kept_next + w->kept_first[d] + first;

@@ -559,6 +559,9 @@ static uint64_t demi_steps_done(const dem_world *w) {
     return w->clock.steps - (uint64_t)(w->stage.moved && !w->look.calling.who);
 }
 
+/* Returns the radius of body i, m, or of the sphere around its centre that encloses it. It stands
+   beside the position, so that a search reads both at once. */
+DEM_INLINE dem_real demi_radius(const dem_world *w, int i) { return w->bodies.pos[4*i + 3]; }
 /* Calls a task for each work group. Marks this as a call of user-defined functions, because tasks
    on several threads cannot. */
 static void demi_domains_do(dem_world *w, demi_task task) {
@@ -601,7 +604,7 @@ DEM_INLINE dem_vec3 demi_near_arm(const dem_world *w, size_t at, int side) {
 DEM_INLINE dem_real demi_near_radius(const dem_world *w, size_t at, int side) {
     const int32_t *ball = side ? w->near.ball_b : w->near.ball_a;
     return w->effects.clustered ? w->bodies.centre[4*ball[at] + 3]
-        : w->bodies.pos[4*(side ? w->near.b : w->near.a)[at] + 3];
+        : demi_radius(w, (side ? w->near.b : w->near.a)[at]);
 }
 /* Vector, m, from the centre of a body to the image of the other in entry `at`; and that from the
    centre of sphere a to the image of sphere b. */

@@ -64,7 +64,7 @@ static dem_result demi_member_grow(dem_world *w) {
     demi_finish(w);                             /* the function receives complete velocities, */
     for (i = 0; i < n && result == DEM_OK; i++) {   /* and the open half kick the old masses */
         const dem_body id = dem_body_id_get(w, i);
-        const dem_real r = radius[i] = w->bodies.pos[4*i + 3];
+        const dem_real r = radius[i] = demi_radius(w, i);
         dem_body_state state;
         dem_real rate;
         if (demi_is_ghost(w, i) || dem_body_get(w, id, &state) != DEM_OK) continue;
@@ -83,7 +83,7 @@ static dem_result demi_member_grow(dem_world *w) {
         if (!demi_list_drop(w)) result = demi_no_memory(w, "dem_world_step");
     }
     for (i = 0; i < n && result == DEM_OK && grown; i++)
-        if ((radius[i] < w->bodies.pos[4*i + 3] || radius[i] > w->bodies.pos[4*i + 3]) &&
+        if ((radius[i] < demi_radius(w, i) || radius[i] > demi_radius(w, i)) &&
             !demi_size_bad(w, i, radius[i], &mass)) demi_body_resize(w, i, radius[i], mass);
     demi_free(w, radius);
     w->grown = grown;

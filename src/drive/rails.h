@@ -48,7 +48,7 @@ static void demi_rail_given(const dem_world *w, demi_rail *r, int i) {
     demi_put(now, x);
     demi_put(at, demi_rail_place(w, r, i));
     for (k = 0; k < 3; k++)                     /* wrapping leaves a rounding error */
-        if (DEMI_ABS(by[k]) > DEM_R(1e-6)*w->bodies.pos[4*i + 3]) at[k] = now[k];
+        if (DEMI_ABS(by[k]) > DEM_R(1e-6)*demi_radius(w, i)) at[k] = now[k];
     r->at = demi_at(at);
 }
 /* Returns the index of the wall that a rail follows; -1 if there is none. */

@@ -180,8 +180,8 @@ static dem_result demi_output_walls(dem_world *w, const dem_output_desc *d, cons
         z0 = (dem_real)DEMI_FARTHEST;
         z1 = -z0;
         for (i = 0; i < w->bodies.count; i++) {
-            z0 = DEMI_MIN(z0, w->bodies.pos[4*i + 2] - w->bodies.pos[4*i + 3]);
-            z1 = DEMI_MAX(z1, w->bodies.pos[4*i + 2] + w->bodies.pos[4*i + 3]);
+            z0 = DEMI_MIN(z0, w->bodies.pos[4*i + 2] - demi_radius(w, i));
+            z1 = DEMI_MAX(z1, w->bodies.pos[4*i + 2] + demi_radius(w, i));
         }
     }
     return dem_walls_vtp_write(w, path, z0 < z1 ? z0 : 0, z0 < z1 ? z1 : 1);

@@ -238,7 +238,7 @@ static int demi_bodies_sane(const demi_reader *r) {
     int i, k, shaped = 0, unlike = 0;
     if (lost >= 0) return demi_lie(r, "state of body", lost);
     for (i = 0; i < t->bodies.count; i++) {
-        if (!(t->bodies.pos[4*i + 3] > 0) ||
+        if (!(demi_radius(t, i) > 0) ||
             !demi_sane((double)t->bodies.mass[i], 0) || !(t->bodies.mass[i] > 0) ||
             !demi_sane((double)t->bodies.inv_mass[i], 0) ||
                 !demi_sane((double)t->bodies.inv_inertia[i], 0))

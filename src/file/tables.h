@@ -37,7 +37,7 @@ DEM_API dem_result dem_bodies_csv_write(dem_world *world, const char *path) {
               "fx_variance,fy_variance,fz_variance", o.file);
     fputc('\n', o.file);
     for (i = 0; i < w->bodies.count; i++) {
-        const double radius = (double)w->bodies.pos[4*i + 3];
+        const double radius = (double)demi_radius(w, i);
         dem_body_means m;
         fprintf(o.file, "%u,%d", (unsigned)w->bodies.slot[i], (int)w->bodies.material[i]);
         demi_table_put(&o, 0, &radius, 1);

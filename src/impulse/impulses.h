@@ -215,8 +215,8 @@ static void demi_impulses_meet(dem_world *w, int d) {
         const int a = w->near.a[at], b = w->near.b[at];
         dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
         const dem_vec3 way = demi_near_way(w, at);
-        const dem_real l2 = demi_dot(way, way), radii = w->bodies.pos[4*a + 3] +
-            w->bodies.pos[4*b + 3], most = radii + demi_range(w, radii);
+        const dem_real l2 = demi_dot(way, way), radii = demi_radius(w, a) +
+            demi_radius(w, b), most = radii + demi_range(w, radii);
         if (l2 > 0 && l2 <= most*most && s->movers[a].inv + s->movers[b].inv > 0 &&
             !demi_joined(w, a, b, -1)) {
             m->a = a;
@@ -339,7 +339,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
     if (!k) {
         const size_t stride = (size_t)w->near.stride;
         const dem_vec3 way = demi_near_way(w, (size_t)d*stride + (size_t)m->home);
-        const dem_real ra = w->bodies.pos[4*m->a + 3], rb = w->bodies.pos[4*m->b + 3];
+        const dem_real ra = demi_radius(w, m->a), rb = demi_radius(w, m->b);
         const dem_real l = demi_length(way);
         o.normal = demi_scale(way, 1/l);
         o.gap = l - ra - rb;
@@ -356,8 +356,8 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
         o.arm_a = k->arm_a;
         o.arm_b = k->arm_b;
         o.r_eff = k->r_eff;
-        o.size = w->bodies.pos[4*k->a + 3];
-        if (k->b >= 0) o.size = DEMI_MIN(o.size, w->bodies.pos[4*k->b + 3]);
+        o.size = demi_radius(w, k->a);
+        if (k->b >= 0) o.size = DEMI_MIN(o.size, demi_radius(w, k->b));
         o.material = k->b < 0 ? w->walls[k->wall].material : w->bodies.material[k->b] - 1;
         o.memory = k->memory;
         o.stride = 1;

@@ -230,8 +230,8 @@ static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real
    bodies. It also limits how far a gap is closed in a step; gaps are larger only after the user has
    moved a body. */
 static dem_real demi_rod_size(const dem_world *w, const demi_rod *r) {
-    const dem_real a = w->bodies.pos[4*r->a + 3];
-    return r->b < w->bodies.count ? DEMI_MIN(a, w->bodies.pos[4*r->b + 3]) : a;
+    const dem_real a = demi_radius(w, r->a);
+    return r->b < w->bodies.count ? DEMI_MIN(a, demi_radius(w, r->b)) : a;
 }
 /* True if row k of a joint is in force. Planar worlds have no tilt; a motor at its limit is a
    torque instead of a row. */
@@ -784,7 +784,7 @@ static double demi_joints_shift(dem_world *w) {
         o[0] = q.w; o[1] = q.x; o[2] = q.y; o[3] = q.z;
         demi_force_add(w->bodies.last_pos + 4*k->mover, way);
         farthest = DEMI_MAX(farthest, (double)(demi_length(way) + demi_length(turn)*
-                                               w->bodies.pos[4*k->mover + 3]));
+                                               demi_radius(w, k->mover)));
     }
     return farthest;
 }

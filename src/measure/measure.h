@@ -118,7 +118,7 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
     for (i = 0; i < w->bodies.count; i++)       /* parts meet, not their bodies */
         for (k = demi_parts_count(w, i) - 1; k >= 0; k--) {
             const double r = demi_shape_of(w, i) ? (double)demi_part_of(w, i, k).radius
-                : (double)w->bodies.pos[4*i + 3];
+                : (double)demi_radius(w, i);
             if (least < 0 || r < least) least = r;
         }
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
@@ -341,7 +341,7 @@ static int32_t demi_heap_of(int32_t *root, int32_t i) {
    radius. */
 static void demi_heap_join(const dem_world *w, const demi_tree *tree, int i, double most,
                            int32_t *root) {
-    const double r = (double)w->bodies.pos[4*i + 3];
+    const double r = (double)demi_radius(w, i);
     const demi_periods p = demi_periods_of(w);
     demi_search_line line;
     double x[3];
@@ -356,7 +356,7 @@ static void demi_heap_join(const dem_world *w, const demi_tree *tree, int i, dou
         if (!use) continue;
         demi_tree_line(&line, tree, x, x, 1.25*(r + most));
         while ((other = demi_tree_next(&line)) >= 0) {
-            const double reach = 1.25*(r + (double)w->bodies.pos[4*other + 3]);
+            const double reach = 1.25*(r + (double)demi_radius(w, other));
             if (root[other] < 0 || !(demi_far2(x, tree->x + 3*other) < reach*reach)) continue;
             other = demi_heap_of(root, other);
             k = demi_heap_of(root, i);
@@ -380,7 +380,7 @@ static int demi_heaps(dem_world *w, dem_box box, demi_surface *s) {
         const dem_vec3 at = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
         x[3*i] = (double)at.x; x[3*i + 1] = (double)at.y; x[3*i + 2] = (double)at.z;
         s->root[i] = demi_repose_sees(w, box, i, at) ? i : -1;
-        most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
+        most = DEMI_MAX(most, (double)demi_radius(w, i));
     }
     ok = x && mass && s->root && demi_tree_make(w, &tree, x, n);
     for (i = 0; i < n && ok; i++) if (s->root[i] >= 0) demi_heap_join(w, &tree, i, most, s->root);
@@ -409,7 +409,7 @@ static double demi_surface_place(const dem_world *w, const demi_surface *s, int 
         : across - n*floor(across/n);
     *row = floor((far - s->from)/s->width);
     *column = DEMI_MIN(DEMI_MAX((int)at, 0), s->columns - 1);
-    return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
+    return (double)demi_dot(d, s->up) + (double)demi_radius(w, i);
 }
 /* Returns the centre of mass (m) of the heap, also if it extends across periodic faces. Along a
    periodic axis, positions are mapped to a circle; the mean direction on it gives a point in the
@@ -452,8 +452,8 @@ static int demi_surface_look(dem_world *w, demi_surface *s) {
         double h;
         if (s->root[i] != s->heap) continue;
         h = demi_surface_place(w, s, i, &row, &column);
-        lowest = DEMI_MIN(lowest, h - 2*(double)w->bodies.pos[4*i + 3]);
-        diameter += 2*(double)w->bodies.pos[4*i + 3];
+        lowest = DEMI_MIN(lowest, h - 2*(double)demi_radius(w, i));
+        diameter += 2*(double)demi_radius(w, i);
         count++;
     }
     if (!count) return 1;
@@ -580,7 +580,7 @@ DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
         if (b < 0) continue;
         /* positions inside the periodic box, where the next rebuild of the list puts them */
         demi_put(x, demi_place_of(&p, demi_at(w->bodies.pos + 4*b)));
-        x[3] = w->bodies.pos[4*b + 3];
+        x[3] = demi_radius(w, b);
         h = demi_hash(h, &i, sizeof i);
         h = demi_hash(h, x, sizeof x);
         h = demi_hash(h, w->bodies.vel + 4*b, 3*sizeof(dem_real));

@@ -61,7 +61,7 @@ static int demi_mix_cell(const dem_world *w, const demi_periods *p, const dem_mi
 }
 /* True if body i is of the component. */
 static int demi_mix_mine(const dem_world *w, const dem_mixing_desc *d, int i) {
-    const dem_real r = w->bodies.pos[4*i + 3];
+    const dem_real r = demi_radius(w, i);
     return (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
         (!(d->radius_max > 0) || r <= d->radius_max);
 }

@@ -126,8 +126,8 @@ static void demi_radii_of(const dem_world *w, double *least, double *most) {
     *least = 1e300;
     *most = 0;
     for (i = 0; i < w->bodies.count; i++) {
-        *least = DEMI_MIN(*least, (double)w->bodies.pos[4*i + 3]);
-        *most = DEMI_MAX(*most, (double)w->bodies.pos[4*i + 3]);
+        *least = DEMI_MIN(*least, (double)demi_radius(w, i));
+        *most = DEMI_MAX(*most, (double)demi_radius(w, i));
     }
 }
 static void demi_check_radii(const dem_world *w, demi_findings *f) {
@@ -151,7 +151,7 @@ static void demi_check_digits(const dem_world *w, demi_findings *f) {
     for (i = 0; i < w->bodies.count; i++)
         for (k = 0; k < 3; k++) {
             const double part =
-                fabs((double)w->bodies.pos[4*i + k])/(double)w->bodies.pos[4*i + 3]*digit;
+                fabs((double)w->bodies.pos[4*i + k])/(double)demi_radius(w, i)*digit;
             if (!(part > worst)) continue;
             worst = part;
             body = i;
@@ -340,7 +340,7 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
             const int from = d*list->stride, n = cross ? w->domains[d].cross : w->domains[d].own;
             for (k = from; k < from + n; k++) {
                 const int a = list->a[k], b = list->b[k];
-                const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
+                const dem_real r = DEMI_MIN(demi_radius(w, a), demi_radius(w, b));
                 const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
                                                               list->image[k], r)/r);
                 if (!(deep > 0.01) || demi_parted(w, a, b, -1) ||
@@ -723,7 +723,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
     for (i = 0; i < w->bodies.count; i++) {
         if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
         for (k = 0; k < 3; k++) {
-            const double x = (double)w->bodies.pos[4*i + k], r = (double)w->bodies.pos[4*i + 3];
+            const double x = (double)w->bodies.pos[4*i + k], r = (double)demi_radius(w, i);
             lo[k] = DEMI_MIN(lo[k], x - r);
             hi[k] = DEMI_MAX(hi[k], x + r);
         }

@@ -124,7 +124,7 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
         if (w->desc.force)
             DEMI_USER(w, "a report of effects", 1,
                       force = demi_add(force, w->desc.force(
-                          body.position, body.velocity, w->bodies.pos[4*i + 3],
+                          body.position, body.velocity, demi_radius(w, i),
                           w->bodies.mass[i], w->clock.time, w->desc.force_user)))
         pushed += demi_dot(force, force) > 0 || demi_dot(torque, torque) > 0;
     }

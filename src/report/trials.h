@@ -134,7 +134,7 @@ static void demi_try_shake(dem_world *t, uint64_t seed) {
     int i, k;
     for (i = 0; i < t->bodies.count && seed; i++)
         for (k = 0; k < (t->desc.planar ? 2 : 3) && t->bodies.inv_mass[i] > 0; k++)
-            t->bodies.pos[4*i + k] += t->bodies.pos[4*i + 3]*
+            t->bodies.pos[4*i + k] += demi_radius(t, i)*
                 (dem_real)(1e-6*(2*demi_uniform(&seed) - 1));
 }
 /* Runs the copy t and adds the means of the observables over the second half of the run to sum. The
@@ -333,7 +333,7 @@ static void demi_usual_scales(const dem_world *w, dem_trials *out) {
     double lowest = 1e300, fall = 0;
     int i;
     for (i = 0; i < w->bodies.count; i++) {
-        const double r = (double)w->bodies.pos[4*i + 3];
+        const double r = (double)demi_radius(w, i);
         if (!(w->bodies.inv_mass[i] > 0)) continue;
         lowest = DEMI_MIN(lowest, (double)demi_dot(demi_at(w->bodies.pos + 4*i), up) - r);
         fall += (double)w->bodies.mass[i]*g*r;

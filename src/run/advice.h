@@ -27,7 +27,7 @@ static double demi_advise_shape(const dem_world *w, const demi_shape *shape, dou
 }
 static double demi_advise_radius(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
-    const double r = (double)w->bodies.pos[4*body + 3];
+    const double r = (double)demi_radius(w, body);
     return shape ? demi_advise_shape(w, shape, (double)shape->equal*(r/(double)shape->radius)) : r;
 }
 /* Returns the largest step, s, at which velocity Verlet with predicted velocities integrates
@@ -85,7 +85,7 @@ static void demi_grades_add(const dem_world *w, demi_grades *g) {
     for (i = 0; i < w->bodies.count; i++) {
         const int m = w->bodies.material[i] - 1;
         const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
-        const double r = (double)w->bodies.pos[4*i + 3], equal = demi_advise_radius(w, i);
+        const double r = (double)demi_radius(w, i), equal = demi_advise_radius(w, i);
         if (demi_is_ghost(w, i)) continue;
         g->bodies++;
         g->speed = DEMI_MAX(g->speed, (double)demi_length(demi_at(w->bodies.vel + 4*i)));
@@ -302,19 +302,19 @@ typedef struct demi_pressed {
 static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, double f,
                            double arm, demi_press *p) {
     const double m = (double)w->bodies.mass[body];
-    const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
+    const double I = demi_sphere_inertia(w, m, (double)demi_radius(w, body));
     if (w->bodies.inv_mass[body] <= 0) return;
     p->contacts += (double)c->weight;
     if (!(c->weight > 0)) return;
     p->omega2 += f*DEMI_MAX(c->s.k/m, c->s.kt*(1/m + arm*arm/I) + c->s.kr/I);
     p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
-    p->deepest = DEMI_MAX(p->deepest, c->overlap/w->bodies.pos[4*body + 3]);
+    p->deepest = DEMI_MAX(p->deepest, c->overlap/demi_radius(w, body));
 }
 /* Adds a contact to a body's matrices, for the close bound. */
 static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, double f,
                                  double arm, demi_press_whole *p) {
     const double m = (double)w->bodies.mass[body];
-    const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
+    const double I = demi_sphere_inertia(w, m, (double)demi_radius(w, body));
     const double n[3] = {(double)c->n.x, (double)c->n.y, (double)c->n.z};
     int i, j, e = 0, d;
     if (w->bodies.inv_mass[body] <= 0) return;
@@ -373,8 +373,8 @@ static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_con
     c->wall = b >= 0 ? 0 : w->walls[wall].id;
     c->who.a = dem_body_id_get(w, a);
     if (b >= 0) c->who.b = dem_body_id_get(w, b);
-    c->who.radius_a = w->bodies.pos[4*a + 3];
-    c->who.radius_b = b >= 0 ? w->bodies.pos[4*b + 3] : 0;
+    c->who.radius_a = demi_radius(w, a);
+    c->who.radius_b = b >= 0 ? demi_radius(w, b) : 0;
     c->who.mass_a = w->bodies.mass[a];
     c->who.mass_b = b >= 0 ? w->bodies.mass[b] : 0;
     c->who.time = w->clock.time;
@@ -455,7 +455,7 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
         for (p = 0; p < domain->kept; p++) {
             const demi_kept *k = demi_kept_of(w, d) + p;
             const int i = k->a;
-            const double arm = (double)w->bodies.pos[4*i + 3];
+            const double arm = (double)demi_radius(w, i);
             dem_real coef[DEMI_COEFS], root[2];
             demi_pressed c;
             if (!(k->overlap > 0) || k->b >= 0 || demi_shape_of(w, i) ||

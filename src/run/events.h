@@ -536,7 +536,7 @@ static int demi_events_note(dem_world *w) {
         const dem_real *y = c.own ? c.own->memory
             : w->near.memory + (size_t)c.d*DEMI_IMPULSE_REALS*step + c.entry;
         const dem_real *lost = y + DEMI_IMPULSE_LOST*step;
-        const dem_real ra = w->bodies.pos[4*c.a + 3];
+        const dem_real ra = demi_radius(w, c.a);
         const int wall = c.b < 0;
         double energy[DEMI_E_ROLL + 1] = {0};
         demi_noted_at *at;
@@ -548,7 +548,7 @@ static int demi_events_note(dem_world *w) {
         if (!at) continue;
         at->normal = c.info.normal;
         at->arm = c.own ? c.own->arm_a
-            : demi_note_arm(at->normal, ra, demi_length(c.branch), ra + w->bodies.pos[4*c.b + 3]);
+            : demi_note_arm(at->normal, ra, demi_length(c.branch), ra + demi_radius(w, c.b));
         at->shift = wall ? c.own->shift : demi_v(0, 0, 0);
     }
     demi_events_take(w);

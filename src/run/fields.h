@@ -128,7 +128,7 @@ static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const 
 }
 /* True if the field includes body i, by group, material and radius. */
 static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i) {
-    const dem_real r = w->bodies.pos[4*i + 3];
+    const dem_real r = demi_radius(w, i);
     return demi_in_group(w, d->group, i) &&
            (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
            (!(d->radius_max > 0) || r <= d->radius_max);

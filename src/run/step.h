@@ -184,7 +184,7 @@ static void demi_domain_clear(dem_world *w, int d) {
         const dem_vec3 v = demi_field_rate(w, w->bodies.vel, w->bodies.half_vel, i);
         dem_vec3 f;
         DEMI_USER(w, "a step", 1, f = w->desc.force(demi_at(w->bodies.pos + 4*i), v,
-                                                    w->bodies.pos[4*i + 3], w->bodies.mass[i],
+                                                    demi_radius(w, i), w->bodies.mass[i],
                                                     demi_field_time(w), w->desc.force_user))
         demi_put(w->bodies.force + 4*i, f);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)

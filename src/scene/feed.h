@@ -449,7 +449,7 @@ static int demi_outlet_class(const dem_outlet_desc *d, dem_real r) {
 /* Counts grain i: in its class, and as wanted or not. */
 static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     const dem_outlet_desc *d = &o->desc;
-    const dem_real r = w->bodies.pos[4*i + 3];
+    const dem_real r = demi_radius(w, i);
     const double m = (double)w->bodies.mass[i];
     const int k = demi_outlet_class(d, r);
     const int wanted = r >= d->wanted_min && (!(d->wanted_max > 0) || r <= d->wanted_max);
@@ -504,7 +504,7 @@ static int demi_outlet_sees(const dem_world *w, const demi_periods *p, const dem
    if it is in the region now. The first look at a grain counts nothing. */
 static void demi_outlet_count(dem_world *w, demi_outlet *o, int i, int in) {
     const uint32_t bit = 1u << o->zone, known = bit << DEMI_ZONES, before = w->bodies.zones[i];
-    const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
+    const int k = demi_outlet_class(&o->desc, demi_radius(w, i));
     if (before & known) {
         if (in && !(before & bit)) demi_outlet_book(w, o, i);
         if (!in && (before & bit)) {
@@ -552,7 +552,7 @@ DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_
     if (!o) return DEM_ERROR_ARGUMENT;
     *state = o->state;
     for (i = 0; i < w->bodies.count && o->zone >= 0; i++) {
-        const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
+        const int k = demi_outlet_class(&o->desc, demi_radius(w, i));
         const double m = (double)w->bodies.mass[i];
         if (!demi_outlet_sees(w, &p, o, i)) continue;
         state->held[k]++;

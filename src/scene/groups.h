@@ -87,7 +87,7 @@ static unsigned char *demi_select(dem_world *w, const char *call, const dem_sele
         marks[w->bodies.slot_index[b.slot - 1]] = 1;
     }
     for (i = 0; i < w->bodies.count; i++) {
-        const dem_real r = w->bodies.pos[4*i + 3];
+        const dem_real r = demi_radius(w, i);
         marks[i] = marks[i] && demi_in_group(w, s->group, i) &&
             (!s->material.id || w->bodies.material[i] == s->material.id) &&
             (!s->shape.id || (w->bodies.orienting && w->bodies.shape[i] == s->shape.id)) &&
@@ -198,7 +198,7 @@ DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_select
         if (i < 0 || !marks[i]) continue;
         demi_put(x, demi_place_of(&p, demi_at(w->bodies.pos + 4*i)));
         out->mass += m;
-        out->radius += (double)w->bodies.pos[4*i + 3];
+        out->radius += (double)demi_radius(w, i);
         for (k = 0; k < 3; k++) {
             const double v = (double)w->bodies.vel[4*i + k];
             out->centre[k] += m*(double)x[k];

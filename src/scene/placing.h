@@ -275,7 +275,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
         c->size[k] = (double)c->p.period[k];
     }
     for (i = 0; i < w->bodies.count; i++) {
-        const dem_real r = w->bodies.pos[4*i + 3];
+        const dem_real r = demi_radius(w, i);
         const dem_vec3 d = demi_nearest(&c->p, demi_sub(demi_at(w->bodies.pos + 4*i), mid));
         /* 0.1 % more, so that rounding does not lose a neighbour */
         const double s = 1.001*(double)(r + radius);

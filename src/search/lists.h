@@ -20,7 +20,7 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_body[k] = body;
     w->wall_id[k] = wall;
     w->wall_element[k] = element;
-    w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* allows for rounding */
+    w->wall_gap[k] = gap - demi_radius(w, body)/10000;    /* allows for rounding */
     demi_put(w->wall_shift + 3*(size_t)k, shift);
     w->wall_cell[k] = cell;
 }
@@ -55,7 +55,7 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
 static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift,
                            dem_vec3 at, int32_t cell) {
     const demi_wall *wall = demi_surface_of(w, j);
-    const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
+    const dem_real r = demi_radius(w, i), near_by = r + demi_cover(w);
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
     dem_real away;
@@ -114,12 +114,12 @@ static void demi_wall_look_all(dem_world *w, demi_domain *domain, int d, int i, 
     const demi_wall *wall = demi_surface_of(w, j);
     const dem_vec3 at = demi_unrotate(wall->pose.rotation, demi_sub(demi_add(demi_at(
         w->bodies.pos + 4*i), shift), wall->pose.position)), *step = wall->step;
-    const double far = (double)(w->bodies.pos[4*i + 3] + demi_cover(w));
+    const double far = (double)(demi_radius(w, i) + demi_cover(w));
     const dem_box *box = &wall->box;
     double u, v, to_u, to_v;
     dem_vec3 n;
     if (demi_tessellation_beyond(w, wall, at, &n)) {
-        demi_wall_offer(w, domain, d, i, j, 0, -w->bodies.pos[4*i + 3], shift, 0);
+        demi_wall_offer(w, domain, d, i, j, 0, -demi_radius(w, i), shift, 0);
         return;
     }
     if (!(step[0].x > 0)) { demi_wall_look(w, domain, d, i, j, shift, at, 0); return; }
@@ -152,7 +152,7 @@ static void demi_body_walls(dem_world *w, int d, int i) {
             (w->effects.ignoring && demi_ignores(w, w->bodies.material[i] - 1, wall->material)))
             continue;
         for (n = 0; demi_wall_image(w, wall, demi_at(w->bodies.pos + 4*i),
-                                    w->bodies.pos[4*i + 3] + demi_cover(w), n, &shift); n++)
+                                    demi_radius(w, i) + demi_cover(w), n, &shift); n++)
             demi_wall_look_all(w, domain, d, i, j, shift);
     }
     for (; !touches && k < d*w->wall_stride + domain->walls; k++) w->wall_gap[k] = DEMI_ONLY_SHEET;

@@ -63,7 +63,7 @@ static void demi_species_count(dem_world *w) {
         const demi_shape *shape = demi_shape_of(w, i);
         const int lone = demi_lone(w, i), count = lone ? 1 : e->clustered ? shape->count : 0;
         for (k = 0; k < count && e->species_count <= DEMI_SPECIES; k++) {
-            const demi_species s = demi_species_of(w, i, lone ? w->bodies.pos[4*i + 3]
+            const demi_species s = demi_species_of(w, i, lone ? demi_radius(w, i)
                 : shape->parts[4*k + 3]*demi_scale_of(w, i, shape));
             if (demi_species_find(w, &s) < e->species_count) continue;
             if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = s;
@@ -245,7 +245,7 @@ DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, int *coun
 static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *shift, dem_real cut) {
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                          demi_at(w->bodies.pos + 4*a)), demi_at(shift));
-    const dem_real far_b = w->bodies.pos[4*b + 3] + cut;
+    const dem_real far_b = demi_radius(w, b) + cut;
     const dem_real *x, *y;
     int na, nb, i, j;
     x = demi_balls_of(w, a, &na);
@@ -283,8 +283,8 @@ static int demi_near_pick_balls(dem_world *w, const demi_list *list, int begin, 
         const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
                                              demi_at(w->bodies.pos + 4*a)),
                                     demi_at(w->image_shift + list->image[k]));
-        const dem_real cut = demi_near_cut(w, a, b), far_b = w->bodies.pos[4*b + 3] + cut;
-        const dem_real all_a = w->bodies.pos[4*a + 3] + far_b;
+        const dem_real cut = demi_near_cut(w, a, b), far_b = demi_radius(w, b) + cut;
+        const dem_real all_a = demi_radius(w, a) + far_b;
         const int32_t *start = w->bodies.centre_start;
         if (!(demi_dot(r, r) < all_a*all_a) || !demi_has_balls(w, a) || !demi_has_balls(w, b))
             continue;
@@ -472,7 +472,7 @@ static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
     const demi_walled *p = w->walled + a, *q = w->walled + b;
     const dem_real gone = (dem_real)(w->margin.gone + w->margin.walls_gone);
     const dem_real apart = demi_length(to) -
-        DEM_R(0.999)*(w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3]);
+        DEM_R(0.999)*(demi_radius(w, a) + demi_radius(w, b));
     const dem_real both = DEMI_MAX(apart, DEM_R(0))/2 + gone;
     const dem_real one = w->effects.scales ? both : DEMI_MIN(both, apart - demi_cover(w) + 2*gone);
     const dem_real gap = q->gap < DEMI_ONLY_SHEET ? both : one;

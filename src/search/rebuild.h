@@ -95,7 +95,7 @@ static void demi_effects(dem_world *w) {
     w->effects.fixed_count = 0;
     w->effects.radius_min = w->effects.radius_max = w->bodies.count ? w->bodies.pos[3] : 0;
     for (i = 0; i < w->bodies.count; i++) {
-        const dem_real r = w->bodies.pos[4*i + 3];
+        const dem_real r = demi_radius(w, i);
         w->effects.radius_min = DEMI_MIN(w->effects.radius_min, r);
         w->effects.radius_max = DEMI_MAX(w->effects.radius_max, r);
         w->effects.fixed_count += w->bodies.inv_mass[i] <= 0;
@@ -262,7 +262,7 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
     const dem_vec3 x = demi_nearest(p, demi_sub(demi_at(w->bodies.pos + 4*b),
                                                 demi_at(w->bodies.pos + 4*a)));
     const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
-    return demi_length(x) < w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3] +
+    return demi_length(x) < demi_radius(w, a) + demi_radius(w, b) +
            (dem_real)(w->margin.reach + w->margin.slack) +
                             (dem_real)w->margin.span*demi_length(u);
 }
@@ -277,7 +277,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     w->domains[last].end = i + 1;
     if (demi_response_is(w, DEMI_MIDWAY)) w->margin.gone += w->margin.step_gone/2;
     if (count >= w->join_room || demi_scale_missing(w, i) ||
-        w->bodies.pos[4*i + 3] > w->effects.radius_max)
+        demi_radius(w, i) > w->effects.radius_max)
         return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
@@ -298,7 +298,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     if (w->sheeted) demi_walled_add(w, last*w->wall_stride + walls,
                                     last*w->wall_stride + w->domains[last].walls);
     demi_quiet_at(w, last, i)->restless = 2;
-    w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
+    w->effects.radius_min = DEMI_MIN(w->effects.radius_min, demi_radius(w, i));
     return 1;
 }
 

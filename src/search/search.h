@@ -327,7 +327,7 @@ static double demi_radii_count(const dem_world *w, double *top, int *below) {
     }
     /* neighbours in the arrays are often alike: starts from the last k */
     for (i = 0, k = 0; i < w->bodies.count; i++) {
-        const double r = (double)w->bodies.pos[4*i + 3], side = 2*r;
+        const double r = (double)demi_radius(w, i), side = 2*r;
         while (k > 0 && r > limit[k]) k--;
         while (k < DEMI_LEVELS - 1 && r <= limit[k + 1]) k++;
         below[k]++;
@@ -405,7 +405,7 @@ static int demi_levels_lay(dem_world *w) {
     for (i = 0; i < w->bodies.count; i++) {
         const demi_level *level = w->levels.level;
         while (level < w->levels.level + w->levels.count - 1 &&
-               (double)w->bodies.pos[4*i + 3] <= level[1].radius)
+               (double)demi_radius(w, i) <= level[1].radius)
             level++;
         w->bodies.cell_of[i] = level->first +
             demi_cell_of(&p, w->cell_origin, level->size, level->cells, along,
@@ -462,7 +462,7 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
         w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
     const double reach =
-        ((double)w->bodies.pos[4*a + 3] + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
+        ((double)demi_radius(w, a) + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
         slack;
     const double slant = demi_slant(p), lean = (slant - 1)*reach;
     const demi_stretch sx = demi_level_span(w, level, 0, x, reach*slant);
@@ -622,7 +622,7 @@ static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
 /* Lower or upper end, m, of the box of a body, by slot. */
 static dem_real demi_box_end(const dem_world *w, int slot, int axis, int upper) {
     const int i = w->bodies.slot_index[slot];
-    const dem_real grow = w->bodies.pos[4*i + 3] + demi_cover(w)/2;
+    const dem_real grow = demi_radius(w, i) + demi_cover(w)/2;
     return upper ? w->bodies.pos[4*i + axis] + grow : w->bodies.pos[4*i + axis] - grow;
 }
 /* True if the boxes of two bodies, by slot, overlap on every axis that is not periodic. */
@@ -772,7 +772,7 @@ static void demi_rows_linked(dem_world *w, int d) {
 
 /* Computes the bins of a body's box: for each axis the first one and how many more. */
 static void demi_bins_of(dem_world *w, int body) {
-    const double grow = ((double)w->bodies.pos[4*body + 3] + (double)demi_cover(w)/2)*(1 + 1e-5);
+    const double grow = ((double)demi_radius(w, body) + (double)demi_cover(w)/2)*(1 + 1e-5);
     const demi_periods p = demi_periods_of(w);
     const dem_real *place = w->bodies.pos + 4*body;
     int32_t *at = w->bin_of + 6*body;
@@ -807,7 +807,7 @@ static int demi_bins_lay(dem_world *w) {
     double hi[3], least = 0, all;
     int i, k, n;
     for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
-    for (i = 0; i < w->bodies.count; i++) least += (double)w->bodies.pos[4*i + 3];
+    for (i = 0; i < w->bodies.count; i++) least += (double)demi_radius(w, i);
     least = 2*least/DEMI_MAX(w->bodies.count, 1) + (double)demi_cover(w) + 1e-300;
     if (!DEMI_GROW(w, w->bin_of, 6*(size_t)w->bodies.count + 6)) return 0;
     do {

@@ -241,7 +241,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
             sums[1] += w->domains[d].contacts;
         }
         for (i = 0; i < w->bodies.count; i++) {
-            const double r = (double)w->bodies.pos[4*i + 3];
+            const double r = (double)demi_radius(w, i);
             if (demi_is_ghost(w, i)) continue;
             sums[2]++;
             radii[0] = DEMI_MAX(radii[0], r);
@@ -368,7 +368,7 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
         return;
     }
     for (i = 0; i < w->bodies.count; i++) {
-        const double x = (double)w->bodies.pos[4*i + s->axis], r = (double)w->bodies.pos[4*i + 3];
+        const double x = (double)w->bodies.pos[4*i + s->axis], r = (double)demi_radius(w, i);
         if (!(x + s->cut - (double)s->head.effects.radius_max +
               r > s->borders[b->index + 1])) continue;
         w->bodies.ghost[w->bodies.slot[i]] = DEMI_GHOST_ABOVE;

@@ -307,7 +307,7 @@ static int demi_needs_facets(const dem_world *w, const demi_wall *wall, int i) {
 /* The number of the surface on which body i touches a wall. */
 static int demi_surface_for(const dem_world *w, int wall, int i) {
     int j = demi_needs_facets(w, &w->walls[wall], i) ? 0 : w->surface_count;
-    const int scale = 1 + demi_scale_bit(w->bodies.pos[4*i + 3]);
+    const int scale = 1 + demi_scale_bit(demi_radius(w, i));
     while (j < w->surface_count && !(w->surfaces[j].scale == scale &&
                                      w->surfaces[j].lead == wall)) j++;
     return j < w->surface_count ? w->wall_count + j : demi_surface_number(w, wall);
@@ -317,7 +317,7 @@ static int demi_surface_for(const dem_world *w, int wall, int i) {
 static int demi_surface_scale(const dem_world *w, int j, int i) {
     const demi_wall *s = demi_surface_of(w, j);
     const demi_wall *wall = s->scale ? &w->walls[s->lead] : s;
-    return demi_needs_facets(w, wall, i) ? 1 + demi_scale_bit(w->bodies.pos[4*i + 3]) : 0;
+    return demi_needs_facets(w, wall, i) ? 1 + demi_scale_bit(demi_radius(w, i)) : 0;
 }
 /* The cell in column u and row v of a tessellation that repeats, and its displacement, m, in the
    frame of the surface. Columns 65,536 apart have the same number: the one next to `at` counts. */
@@ -383,7 +383,7 @@ static int demi_tessellations_make(dem_world *w, uint64_t scales) {
 }
 /* The bit of body i in effects.scales if it needs a tessellation that does not exist, else 0. */
 static uint64_t demi_scale_missing(const dem_world *w, int i) {
-    const uint64_t bit = UINT64_C(1) << demi_scale_bit(w->bodies.pos[4*i + 3]);
+    const uint64_t bit = UINT64_C(1) << demi_scale_bit(demi_radius(w, i));
     int j;
     for (j = 0; j < w->wall_count && w->bodies.shaped && !(w->effects.scales & bit); j++)
         if (demi_needs_facets(w, &w->walls[j], i)) return bit;

@@ -128,8 +128,10 @@ static int rel_numbers(rel_draw *d) {
     return 1;
 }
 static int rel_law(rel_draw *d) {
+    const int plain = rel_chance(d->r, 0.5);
     if (d->impulses) return 0;
-    rel_put(rel_the_world(d), "law", rel_code_of(rel_chance(d->r, 0.5) ? "law_plain" : "law_spring"));
+    rel_put(rel_the_world(d), "law", rel_code_of(plain ? "law_plain" : "law_spring"));
+    if (plain) rel_put(rel_the_world(d), "normal_law", DEM_NORMAL_LINEAR);     /* its stiffness is the law's */
     rel_put(rel_the_world(d), "law_memory", 3);
     rel_put(rel_the_world(d), "law_vectors", 1);
     return 1;

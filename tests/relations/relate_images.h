@@ -487,7 +487,7 @@ static int rel_not_begun(rel_case *c) {
 /* A plane that moves in itself and a plane at rest whose surface moves push grains in the same way. */
 static int rel_belt_or_wall(rel_case *c) {
     /* which may follow a wall */
-    static const int moves[] = {REL_MOTION, REL_TABLE, REL_BELT, REL_RAIL, REL_OUTLET, -1};
+    static const int moves[] = {REL_MOTION, REL_TABLE, REL_BELT, REL_RAIL, REL_OUTLET, REL_JOINT, -1};
     const rel_how how = {0};
     const rel_set *n;
     rel_op *op;

@@ -69,6 +69,7 @@ static const rel_rule rel_rules[] = {
     {"ignored pair", 1, "two materials", "a pair of two"},
     {"rail", 0, "impulses", "rails need springs"},
     {"laid cube", 1, "cubes", "a kind of it"},
+    {"laid cube", 0, "DMT,JKR,capillary", "whether it touches is rounding, and the force begins with a jump"},
     {"laid cube", 0, "bumpy mesh,profile,wall of grains,sieve,rod,periodic,open", "there is no flat floor"},
     {"sieve disc,reduced holes,fractions of segments",
      0, "ellipsoids,cubes,rocks,unions,unions of ellipsoids,unions of polyhedra,"
