@@ -5579,8 +5579,8 @@ static uint64_t demi_steps_done(const dem_world *w) {
     return w->clock.steps - (uint64_t)(w->stage.moved && !w->look.calling.who);
 }
 
-/* Returns the radius of body i, m: of a sphere, or of the smallest sphere around its centre that
-   encloses it. It stands beside the position, so that a search reads both at once. */
+/* Returns the radius of body i, m, or of the sphere around its centre that encloses it. It stands
+   beside the position, so that a search reads both at once. */
 DEM_INLINE dem_real demi_radius(const dem_world *w, int i) { return w->bodies.pos[4*i + 3]; }
 /* Calls a task for each work group. Marks this as a call of user-defined functions, because tasks
    on several threads cannot. */
@@ -42577,6 +42577,12 @@ static void demi_law_again(const dem_contact *c, dem_real *memory, dem_contact_f
     }
     DEMI_USER_WITHIN(own->desc.law(&mine, memory, f));
 }
+static void demi_rate_again(const dem_contact *c, dem_real *rates) {
+    const demi_again *own = (const demi_again *)c->user;
+    dem_contact mine = *c;
+    mine.user = own->desc.law_user;
+    DEMI_USER_WITHIN(own->desc.law_rate(&mine, rates));
+}
 static dem_vec3 demi_force_again(dem_vec3 position, dem_vec3 velocity, dem_real radius,
                                  dem_real mass, double time, void *user) {
     const demi_again *own = (const demi_again *)user;
@@ -42600,6 +42606,7 @@ static void demi_body_force_again(const dem_body_state *body, dem_body id, doubl
 static void demi_again_law(dem_world *t, demi_again *own) {
     t->desc.law = demi_law_again;
     t->desc.law_rows = 0;
+    if (t->desc.law_rate) t->desc.law_rate = demi_rate_again;
     t->desc.law_user = own;
 }
 static void demi_again_field(dem_world *t, demi_again *own) {

@@ -41,6 +41,11 @@ static void effects_law(const dem_contact *c, dem_real *memory, dem_contact_forc
     memory[0] += 1;
     f->normal = DEM_R(1e4)*c->overlap + c->closing_speed;
 }
+static long effects_asked, effects_strange;    /* calls of the law; calls of its rate with another user's data */
+static void effects_rate(const dem_contact *c, dem_real *rates) {
+    effects_strange += c->user != &effects_asked;
+    rates[0] = rates[1] = 1;
+}
 static dem_vec3 effects_wind(dem_vec3 position, dem_vec3 velocity, dem_real radius, dem_real mass, double time,
                              void *user) {
     (void)velocity; (void)radius; (void)mass; (void)time;
@@ -243,33 +248,40 @@ int main(int argc, char **argv) {
     }
     TEST("effect costs are measured on copies, also of user-defined laws and fields, and change no bit of the world") {
         int own, k;
-        for (own = 0; own < 3; own++) {
+        for (own = 0; own < 4; own++) {
             dem_world_desc desc = DEM_WORLD_DESC;
             dem_effect all[DEM_EFFECTS];
             effects_scene s, plain;
-            long asked = 0;
             uint64_t memory;
+            effects_asked = effects_strange = 0;
             desc.ledger = 1;
             desc.orientations = own == 0;
             if (own == 0) desc.force = effects_wind;
             if (own == 1) desc.normal_law = DEM_NORMAL_HYSTERETIC;
-            if (own == 2) {
+            if (own == 3) {
+                desc.law_rate = effects_rate;
+                desc.law_who = 1;
+                desc.body_reals = "heat";
+            }
+            if (own >= 2) {
                 desc.law = effects_law;
                 desc.law_memory = 1;
                 desc.law_stiffness = DEM_R(1e4);
             }
-            desc.law_user = desc.force_user = &asked;
+            desc.law_user = desc.force_user = &effects_asked;
             s = effects_world(desc);
             plain = effects_world(desc);
             CHECK_EQ(scene_step(s.world, 300), DEM_OK);
             CHECK_EQ(scene_step(plain.world, 300), DEM_OK);
             memory = dem_counters_get(s.world).memory;
-            asked = 0;
+            effects_asked = 0;
             CHECK_EQ(dem_effects_get(s.world, 1e-3, all), DEM_EFFECTS);
-            CHECK(own == 1 || asked > 100);
+            CHECK(own == 1 || effects_asked > 100);
+            CHECK_EQ(effects_strange, 0);
             CHECK_EQ(dem_counters_get(s.world).memory, memory);
             for (k = 0; k < DEM_EFFECTS; k++) {
-                const int can = strcmp(all[k].name, "contacts") && strcmp(all[k].name, "unlike grains");
+                const int can = strcmp(all[k].name, "contacts") && strcmp(all[k].name, "unlike grains") &&
+                    strcmp(all[k].name, "body_reals");
                 CHECK_EQ(all[k].measured, all[k].state != DEM_EFFECT_OFF && can);
                 CHECK(all[k].error >= 0 && all[k].share < 1);
             }
