@@ -13236,15 +13236,16 @@ static demi_leaf demi_leaf_of(const demi_join *j, const demi_side *s, int inside
     if (leaf.at < 0) leaf.at += 2*DEMI_PI;
     return leaf;
 }
-/* Unites the facets of one wall at a side that bound the same volume there: around the side, the
+/* Unites the facets of one part at a side that bound the same volume there: around the side, the
    facet where it begins and the one where it ends. count: of the sides s, which may be of other
-   walls, too. */
-static void demi_join_around(demi_join *j, const demi_side *s, int count, int wall, int inside) {
+   parts, too. */
+static void demi_join_around(demi_join *j, const demi_side *s, int count, const int32_t *part,
+                             int own, int inside) {
     demi_leaf leaf[DEMI_LEAVES];
     int stack[DEMI_LEAVES], depth = 0, n = 0, i, k, first = -1;
     for (i = 0; i < count; i++) {
         demi_leaf one;
-        if (j->facet[5*s[i].facet + 3] != wall) continue;
+        if (part[s[i].facet] != own) continue;
         if (first < 0) first = s[i].facet;
         if (n == DEMI_LEAVES) {                 /* too many: one volume */
             for (k = 0; k < n; k++) demi_join_unite(j, first, leaf[k].facet);
@@ -13269,21 +13270,19 @@ static double demi_join_bounds(const demi_join *j, const int32_t *f, const int32
     return j->per == 2 ? demi_d3_dot(n, demi_d(0, 0, 1))
         : demi_d3_dot(n, demi_d3_sub(demi_d3_at(j->x + 3*f[2]), o));
 }
-/* Divides the facets of a wall into shells that bound one volume each. Connected facets are open,
-   and no shell, unless at each side as many of them run in one direction as in the other. Returns 0
-   if memory ran out. */
-static int demi_join_volumes(dem_world *w, demi_join *j) {
-    double *bounds = (double *)demi_alloc(w, (size_t)j->facets, sizeof *bounds);
+/* Divides the facets of each part, a number of facets (-1: none), into shells that bound one volume
+   each. Connected facets are open, and no shell, unless at each side as many of them run in one
+   direction as in the other. bounds: room for a number of each facet. */
+static void demi_join_part_shells(demi_join *j, const int32_t *part, double *bounds) {
     int i, k, m, end, many = 0;
-    if (!bounds) return 0;
     for (i = 0; i < j->facets; i++) { j->root[i] = i; j->mark[i] = 0; }
     for (i = 0; i < j->sides; i = end) {
         end = demi_sides_end(j->side, j->sides, i);
         for (k = i; k < end; k++) {
-            const int wall = j->facet[5*j->side[k].facet + 3];
+            const int own = part[j->side[k].facet];
             int sum = 0;
-            for (m = i; m < end; m++) {
-                if (j->facet[5*j->side[m].facet + 3] != wall) continue;
+            for (m = i; m < end && own >= 0; m++) {
+                if (part[j->side[m].facet] != own) continue;
                 sum += demi_join_sign(j, &j->side[m]);
                 demi_join_unite(j, j->side[k].facet, j->side[m].facet);
             }
@@ -13293,6 +13292,7 @@ static int demi_join_volumes(dem_world *w, demi_join *j) {
     }
     for (i = 0; i < j->facets; i++) {
         int32_t *f = j->facet + 5*i;
+        if (part[i] < 0) continue;
         f[4] = demi_join_root(j, i);
         j->mark[i] |= j->mark[f[4]] & DEMI_JOIN_OPEN;
         bounds[i] = 0;
@@ -13302,16 +13302,36 @@ static int demi_join_volumes(dem_world *w, demi_join *j) {
     for (i = 0; i < j->sides && many; i = end) {
         end = demi_sides_end(j->side, j->sides, i);
         for (k = i; k < end; k++) {
-            const int f = j->side[k].facet, wall = j->facet[5*f + 3];
-            for (m = i; m < k && j->facet[5*j->side[m].facet + 3] != wall; m++) continue;
-            if (m == k && !(j->mark[f] & DEMI_JOIN_OPEN))
-                demi_join_around(j, j->side + i, end - i, wall, bounds[j->facet[5*f + 4]] < 0);
+            const int f = j->side[k].facet, own = part[f];
+            for (m = i; m < k && part[j->side[m].facet] != own; m++) continue;
+            if (m == k && own >= 0 && !(j->mark[f] & DEMI_JOIN_OPEN))
+                demi_join_around(j, j->side + i, end - i, part, own,
+                                 bounds[j->facet[5*f + 4]] < 0);
         }
     }
     for (i = 0; i < j->facets; i++)
-        j->facet[5*i + 4] = j->mark[i] & DEMI_JOIN_OPEN ? -1 : demi_join_root(j, i);
+        if (part[i] >= 0)
+            j->facet[5*i + 4] = j->mark[i] & DEMI_JOIN_OPEN ? -1 : demi_join_root(j, i);
+}
+/* Finds the shells of each wall by itself, and then those of what is left open of all walls: a
+   closed body may be divided among walls. Returns 0 if memory ran out. */
+static int demi_join_volumes(dem_world *w, demi_join *j) {
+    double *bounds = (double *)demi_alloc(w, (size_t)j->facets, sizeof *bounds);
+    int32_t *part = (int32_t *)demi_alloc(w, (size_t)j->facets, sizeof *part);
+    const int ok = bounds && part;
+    int i, first = -1, several = 0;
+    for (i = 0; i < j->facets && ok; i++) part[i] = j->facet[5*i + 3];
+    if (ok) demi_join_part_shells(j, part, bounds);
+    for (i = 0; i < j->facets && ok; i++) {
+        const int32_t *f = j->facet + 5*i;
+        part[i] = f[4] < 0 ? 0 : -1;
+        if (f[4] < 0 && first < 0) first = f[3];
+        several |= f[4] < 0 && f[3] != first;
+    }
+    if (ok && several) demi_join_part_shells(j, part, bounds);
     demi_free(w, bounds);
-    return 1;
+    demi_free(w, part);
+    return ok;
 }
 /* True if a facet lies in a plane that is a wall of this group, and grains may touch its upper
    side: the plane then acts alone. A segment is a strip along z. */
@@ -16729,9 +16749,10 @@ static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
         DEM_R(0.999)*(demi_radius(w, a) + demi_radius(w, b));
     const dem_real both = DEMI_MAX(apart, DEM_R(0))/2 + gone;
     const dem_real one = w->effects.scales ? both : DEMI_MIN(both, apart - demi_cover(w) + 2*gone);
-    const dem_real gap = q->gap < DEMI_ONLY_SHEET ? both : one;
-    return (p->gap <= gap && demi_sheet_before(w, a, b, to, gap)) ||
-           (q->gap <= one && demi_sheet_before(w, b, a, demi_scale(to, -1), one));
+    const dem_real gap_a = q->gap < DEMI_ONLY_SHEET ? both : one;
+    const dem_real gap_b = p->gap < DEMI_ONLY_SHEET ? both : one;
+    return (p->gap <= gap_a && demi_sheet_before(w, a, b, to, gap_a)) ||
+           (q->gap <= gap_b && demi_sheet_before(w, b, a, demi_scale(to, -1), gap_b));
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */

@@ -475,9 +475,10 @@ static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
         DEM_R(0.999)*(demi_radius(w, a) + demi_radius(w, b));
     const dem_real both = DEMI_MAX(apart, DEM_R(0))/2 + gone;
     const dem_real one = w->effects.scales ? both : DEMI_MIN(both, apart - demi_cover(w) + 2*gone);
-    const dem_real gap = q->gap < DEMI_ONLY_SHEET ? both : one;
-    return (p->gap <= gap && demi_sheet_before(w, a, b, to, gap)) ||
-           (q->gap <= one && demi_sheet_before(w, b, a, demi_scale(to, -1), one));
+    const dem_real gap_a = q->gap < DEMI_ONLY_SHEET ? both : one;
+    const dem_real gap_b = p->gap < DEMI_ONLY_SHEET ? both : one;
+    return (p->gap <= gap_a && demi_sheet_before(w, a, b, to, gap_a)) ||
+           (q->gap <= gap_b && demi_sheet_before(w, b, a, demi_scale(to, -1), gap_b));
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */

@@ -158,6 +158,10 @@ static dem_body_state dip(int body, int other, int kind, int impulses, double sk
     return s[0];
 }
 
+/* Hertz's law, called in gaps, too. */
+static void reaching(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    if (c->overlap > 0) dem_law_hertz(c, memory, f);
+}
 /* Pushes grains towards the plane y = 0 from both sides. */
 static dem_vec3 inwards(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
     (void)v; (void)radius; (void)time; (void)user;
@@ -205,6 +209,29 @@ int main(int argc, char **argv) {
                                 CHECK_NEAR(moved, 0, 0);
                             }
                 }
+    }
+
+    TEST("sheets: a ball that overlaps a sheet does not touch one near its other side, in either order") {
+        int first, range;
+        for (range = 0; range < 2; range++)
+            for (first = 0; first < 2; first++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_body b[2];
+                dem_world *w;
+                dem_material m;
+                int i;
+                desc.skin = DEM_R(0.1*R);
+                if (range) { desc.law = reaching; desc.law_range = DEM_R(0.3*R); }
+                w = dem_world_create(&desc);
+                m = scene_material(w, 1e7, 0.5, 0, 0);
+                CHECK(sheet(w, m, MESH, 0.1).id);
+                for (i = 0; i < 2; i++)
+                    b[i] = dem_sphere_add(w, m, DEM_R(R), at(0, i == first ? 0.7*R : -1.05*R, 0.0123));
+                CHECK_EQ(scene_step(w, 1), DEM_OK);
+                CHECK(scene_state(w, b[first]).velocity.y > 0);
+                CHECK_NEAR((double)scene_state(w, b[1 - first]).velocity.y, 0, 0);
+                dem_world_destroy(w);
+            }
     }
 
     TEST("sheets: balls on both sides of a hole touch through it, and those beside it do not") {

@@ -790,5 +790,34 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
+    TEST("no face remains between boxes side by side whose facets are divided among walls") {
+        static const int32_t cube[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                         1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+        static const int in_second[] = {0x000, 0x03f, 0x555, 0x249, 0x00c, 0x7fe};      /* bits: triangles */
+        int i, k, t;
+        for (i = 0; i < 6; i++) {
+            const dem_world_desc d = DEM_WORLD_DESC;
+            dem_world *w = dem_world_create(&d);
+            const dem_material m = scene_material(w, 1e7, 0.3, 0, 0);
+            for (k = 0; k < 4; k++) {           /* the first half of either box, then the second */
+                dem_real x[24];
+                int32_t half[36];
+                dem_mesh mesh;
+                memset(&mesh, 0, sizeof mesh);
+                for (t = 0; t < 8; t++) {
+                    x[3*t] = DEM_R(R)*(dem_real)((k%2) + ((t + 1)/2%2));
+                    x[3*t + 1] = DEM_R(R)*(dem_real)(t/2%2);
+                    x[3*t + 2] = DEM_R(R)*(dem_real)(t/4);
+                }
+                mesh.vertex_count = 8; mesh.vertices = x; mesh.triangles = half;
+                for (t = 0; t < 12; t++)
+                    if ((in_second[i] >> t & 1) == k/2) memcpy(half + 3*mesh.triangle_count++, cube + 3*t, 3*sizeof *cube);
+                if (mesh.triangle_count) CHECK(dem_wall_mesh_add(w, m, &mesh).id);
+            }
+            CHECK_REL(area_of(w)/(R*R), 10, fine ? 1e-9 : 1e-4);
+            for (k = 0; k < w->surfaces[0].element_count; k++) CHECK_EQ(w->surfaces[0].ends[k], 0);
+            dem_world_destroy(w);
+        }
+    }
     return test_end();
 }
