@@ -152,4 +152,3 @@ DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_s
     *servo = demi_servo_now(world, i);
     return DEM_OK;
 }
-static int demi_servos_on(const dem_world *h) { (void)h; return 1; }

@@ -7,7 +7,7 @@
    --------------------------------------------------------------------------------------------- */
 typedef struct demi_feature {
     const char *name;
-    int (*on)(const dem_world *h);
+    int (*on)(const dem_world *h);              /* null: always */
     dem_result (*ready)(dem_world *h);          /* before a step: bodies may come, go or change; the
                                                    time step is then settled again */
     dem_result (*lead)(dem_world *h);           /* before bodies move: speeds are chosen */
@@ -27,19 +27,18 @@ typedef struct demi_feature {
 #define DEMI_JOINTS_FEATURE
 #else
 #define DEMI_JOINTS_FEATURE \
-    {"joints", demi_never_on,  0, 0, 0, 0, 0, 0, 0, \
+    {"joints", 0, 0, 0, 0, 0, 0, 0, 0, \
      demi_joints_visit, 0, demi_joints_grow, demi_joints_check, 0},
 #endif
-static int demi_never_on(const dem_world *h) { (void)h; return 0; }
 static const demi_feature demi_features[] = {
     DEMI_JOINTS_FEATURE
     {"feeds",  demi_feeds_on,  demi_feeds_ready, 0, 0, 0, 0, 0, 0,
      demi_feeds_visit, 0, 0, demi_feeds_check, 0},
-    {"outlets", demi_never_on, 0, 0, 0, 0, 0, 0, 0,
+    {"outlets", 0, 0, 0, 0, 0, 0, 0, 0,
      demi_outlets_visit, 0, 0, 0, 0},
     {"growth", demi_growth_on, demi_radii_grow, 0, 0, 0, 0, 0, 0,
      0, 0, 0, 0, 0},
-    {"servo",  demi_servos_on, 0, demi_servos_lead, 0, 0, 0, 0, 0,
+    {"servo",  0, 0, demi_servos_lead, 0, 0, 0, 0, 0,
      0, 0, 0, 0, 0},
     {"rails",  demi_rails_on,  0, 0, demi_rails_move, 0, 0, demi_rails_act, 0,
      demi_rails_visit, demi_rails_counts, demi_rails_grow, demi_rails_check, 0},
@@ -51,19 +50,20 @@ static const demi_feature demi_features[] = {
     {"fields", demi_fields_on, 0, 0, 0, 0, 0, 0, demi_fields_ended,
      demi_fields_visit, 0, 0, demi_fields_check, 0}};
 enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
+#define DEMI_FEATURE_ON(row, h) (!demi_features[row].on || demi_features[row].on(h))
 /* Runs a phase of all rows that are on, until one fails; that of member phases cannot fail. */
 #define DEMI_PHASE(h, result, phase) \
     { \
         int row; \
         for (row = 0; row < DEMI_FEATURES && result == DEM_OK; row++) \
-            if (demi_features[row].phase && demi_features[row].on(h)) \
+            if (demi_features[row].phase && DEMI_FEATURE_ON(row, h)) \
                 result = demi_features[row].phase(h); \
     }
 #define DEMI_MEMBER_PHASE(w, phase) \
     { \
         int row; \
         for (row = 0; row < DEMI_FEATURES; row++) \
-            if (demi_features[row].phase && demi_features[row].on(w)) demi_features[row].phase(w); \
+            if (demi_features[row].phase && DEMI_FEATURE_ON(row, w)) demi_features[row].phase(w); \
     }
 /* Calls the function of a column of all rows that have one. */
 #define DEMI_ALL_FEATURES(column, arguments) \
