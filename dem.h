@@ -543,9 +543,9 @@
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
    (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh
    format (>>add-format), effect in the report (>>add-effect), array with a value for each body
-   (>>add-array), joint (>>add-joint) or option (>>add-option). docs/extending.md and its four
-   sister pages walk through most of them, and `make recipes` tests these pages. struct dem_world in
-   >>layout says which part owns which data.
+   (>>add-array), feature of the step (>>add-feature), joint (>>add-joint) or option (>>add-option).
+   docs/extending.md and its four sister pages walk through most of them, and `make recipes` tests
+   these pages. struct dem_world in >>layout says which part owns which data.
 
    --- 15. Glossary ---
 
@@ -6310,58 +6310,6 @@ static const demi_field_row demi_world_desc_rows[] = {
     DEMI_ROW_FREE(dem_world_desc, force_user),
     DEMI_ROW_FREE(dem_world_desc, body_reals_user), DEMI_ROW_FREE(dem_world_desc, growth_user),
     DEMI_ROW_END};
-
-/* --- values of fields as bytes of a file and as words; changes of a checkpoint, slabs and reports
-       show them. --- */
-enum { DEMI_ROW_MOST = DEM_GROUPS*24 };         /* bytes of a field in the file, at most */
-/* Writes the value of a field to `out` in the form of the file, r->size bytes. */
-static void demi_row_value(const demi_field_row *r, const void *item, void *out) {
-    const char *at = (const char *)item + r->offset, *text;
-    memset(out, 0, r->size);
-    if (r->type == 'h') {
-        const uint64_t digest = r->digest(item);
-        memcpy(out, &digest, sizeof digest);
-    } else if (r->type == 'p') {
-        char none[sizeof(void (*)(void))] = "";
-        const int32_t one = memcmp(at, none, sizeof none) != 0;
-        memcpy(out, &one, sizeof one);
-    } else if (r->type == 't') {
-        memcpy(&text, at, sizeof text);
-        if (text) strncpy((char *)out, text, r->size - 1);
-    } else memcpy(out, at, r->size);
-}
-/* Prints element k of a value in the form of the file, for an error message. digits: significant
-   digits of reals. */
-static void demi_row_print(const demi_field_row *r, const char *value, size_t k, int digits,
-                                 char *out, size_t size) {
-    const char *word = r->words;
-    int32_t i = 0;
-    uint64_t u;
-    dem_real x;
-    double d;
-    switch (r->type) {
-    case 'i': case 'e': case 'p':
-        memcpy(&i, value + 4*k, sizeof i);
-        for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
-            word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
-        if (word) { demi_words(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
-        memcpy(&i, value + 4*k, sizeof i);
-        demi_words(out, size, "%ld", (long)i);
-        break;
-    case 'u':
-        memcpy(&u, value + 8*k, sizeof u);
-        demi_words(out, size, "%llu", (unsigned long long)u);
-        break;
-    case 'd':
-        memcpy(&d, value + 8*k, sizeof d);
-        demi_words(out, size, "%.*g", digits, d);
-        break;
-    case 't': demi_words(out, size, "\"%.40s\"", value); break;
-    default:
-        memcpy(&x, value + sizeof x*k, sizeof x);
-        demi_words(out, size, "%.*g", digits, (double)x);
-    }
-}
 
 /* ---------------------------------------------------------------------------------------------
    >>stream
@@ -30076,6 +30024,14 @@ static void demi_outlets_visit(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->outlet_count; i++)
         demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
+/* Every slab has all outlets, and applies them to its own grains. */
+static int demi_outlets_share(dem_world *slab, const dem_world *from, int first) {
+    (void)first;
+    if (!DEMI_COPY(slab, slab->outlets, from->outlets, from->outlet_count)) return 0;
+    slab->outlet_count = from->outlet_count;
+    return (!from->bodies.zoned || demi_array_begin(slab, DEMI_ZONED, &slab->bodies.zoned)) &&
+        (!from->bodies.aged || demi_ages_begin(slab));
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>steering
@@ -30819,6 +30775,12 @@ static int demi_rails_check(const demi_reader *r) {
             return demi_lie(r, "rail", i);
     }
     return 1;
+}
+static dem_result demi_rails_whole(dem_world *w, const char *call) {
+    if (!demi_rails_in_force(w)) return DEM_OK;
+    return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs do "
+                       "not pass on; use threads, or walls instead of these bodies",
+                       demi_rails_in_force(w));
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -31661,26 +31623,6 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
     }
     return DEM_OK;
 }
-/* Prints why a chosen dt is shorter than t_c/50, and by what factor. */
-static void demi_held_report(const dem_world *w, FILE *out) {
-    const demi_held *h = &w->clock.held;
-    char who[64] = "a body";
-    if (w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
-    demi_print(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
-               h->from/(double)w->clock.dt, h->from);
-    if (h->body > 0)
-        demi_words(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body,
-                   h->contacts);
-    if (h->by == DEMI_HELD_PRESSED)
-        demi_print(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
-    else if (h->by == DEMI_HELD_RATE)
-        demi_print(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
-                   "that is used\n", (int)h->body, h->limit);
-    else if (h->by == DEMI_HELD_SPIN)
-        demi_print(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
-    else demi_print(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
-                    "used\n", h->limit);
-}
 /* Schedules the next examination of the present contacts: at increasing intervals while the scene
    does not change, at least every 1000 steps. With desc.law_rate at least every eight steps,
    because user-defined numbers become unstable sooner. */
@@ -32454,6 +32396,11 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     return DEM_OK;
 }
 static int demi_cell_on(const dem_world *h) { return h->cell.on; }
+static dem_result demi_cell_whole(dem_world *w, const char *call) {
+    if (!w->cell.on && !(w->cell.side[0] > 0)) return DEM_OK;
+    return demi_refuse(w, call, "the periodic cell of this world has been deformed "
+                       "(dem_cell_set), but borders of slabs do not move; use threads");
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>fields
@@ -32906,6 +32853,29 @@ static int demi_fields_check(const demi_reader *r) {
     for (i = 0; i < r->t->field_count; i++)
         if (!demi_finite_double(r->t->fields[i].next))
             return demi_lie(r, "next sampling time of field", i);
+    return 1;
+}
+static dem_result demi_fields_whole(dem_world *w, const char *call) {
+    int i;
+    for (i = 0; i < w->field_count; i++)
+        if (w->fields[i].desc.variance)
+            return demi_refuse(w, call, "field %d has variance %d, must be 0, because a cell may "
+                               "lie in two slabs, and neither knows the squares of the whole; "
+                               "leave variance out, or use threads", i + 1,
+                               w->fields[i].desc.variance);
+    return DEM_OK;
+}
+/* Each slab sums the contributions of its own grains. The first one starts with the sums of the
+   world, the others start at 0. */
+static int demi_fields_share(dem_world *slab, const dem_world *from, int first) {
+    int i;
+    for (i = 0; i < from->field_count; i++) {
+        const demi_field *a = &from->fields[i];
+        if (dem_field_add(slab, &a->desc).id != i + 1) return 0;
+        slab->fields[i].next = a->next;
+        slab->fields[i].samples = a->samples;
+        if (first) memcpy(slab->fields[i].sums, a->sums, demi_field_reals(a)*sizeof(double));
+    }
     return 1;
 }
 
@@ -33557,6 +33527,11 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
 }
 /* Recording in a step, see >>features. */
 static int demi_events_on(const dem_world *h) { return h->events.n.on; }
+static int demi_events_share(dem_world *slab, const dem_world *from, int first) {
+    (void)first;
+    slab->events.n.on = from->events.n.on;
+    return 1;
+}
 static dem_result demi_events_ready(dem_world *h) {
     return demi_events_room(h) ? DEM_OK : demi_no_memory(h, "dem_world_step");
 }
@@ -33636,10 +33611,10 @@ static int demi_events_check(const demi_reader *r) {
 
 /* ---------------------------------------------------------------------------------------------
    >>features
-   What optional features add to a step and to a checkpoint: a row of functions for each, null where
-   it adds nothing. A step (>>step) runs its phases over all rows that are on, in this order; the
-   checkpoint runs its own over all rows. Neither knows a feature by name. h is the head of a team
-   or a single world; w is a member.
+   What optional features add to a step, to a checkpoint and to slabs: a row of functions for each,
+   null where it adds nothing. A step (>>step) runs its phases over all rows that are on, in this
+   order; checkpoints and slabs run theirs over all rows. None of them knows a feature by name. h is
+   the head of a team or a single world; w is a member.
    --------------------------------------------------------------------------------------------- */
 typedef struct demi_feature {
     const char *name;
@@ -33658,33 +33633,39 @@ typedef struct demi_feature {
     int (*room)(dem_world *t);                  /* allocates; 0: memory ran out */
     int (*sane)(const demi_reader *r);          /* 0 with a message: an impossible value */
     void (*resumed)(dem_world *t);              /* computes what follows from the state */
+    /* slabs */
+    dem_result (*whole)(dem_world *w, const char *call);       /* fails if slabs cannot have it */
+    int (*share)(dem_world *slab, const dem_world *from, int first);   /* copies what each slab has;
+                                                   first: to the first one; 0: memory ran out */
 } demi_feature;
 #ifdef DEM_NO_IMPULSES
 #define DEMI_JOINTS_FEATURE
 #else
 #define DEMI_JOINTS_FEATURE \
     {"joints", 0, 0, 0, 0, 0, 0, 0, 0, \
-     demi_joints_visit, 0, demi_joints_grow, demi_joints_check, 0},
+     demi_joints_visit, 0, demi_joints_grow, demi_joints_check, 0, 0, 0},
 #endif
+/* >>add-feature: add a row here and its functions above. */
 static const demi_feature demi_features[] = {
     DEMI_JOINTS_FEATURE
     {"feeds",  demi_feeds_on,  demi_feeds_ready, 0, 0, 0, 0, 0, 0,
-     demi_feeds_visit, 0, 0, demi_feeds_check, 0},
+     demi_feeds_visit, 0, 0, demi_feeds_check, 0, 0, 0},
     {"outlets", 0, 0, 0, 0, 0, 0, 0, 0,
-     demi_outlets_visit, 0, 0, 0, 0},
+     demi_outlets_visit, 0, 0, 0, 0, 0, demi_outlets_share},
     {"growth", demi_growth_on, demi_radii_grow, 0, 0, 0, 0, 0, 0,
-     0, 0, 0, 0, 0},
+     0, 0, 0, 0, 0, 0, 0},
     {"servo",  0, 0, demi_servos_lead, 0, 0, 0, 0, 0,
-     0, 0, 0, 0, 0},
+     0, 0, 0, 0, 0, 0, 0},
     {"rails",  demi_rails_on,  0, 0, demi_rails_move, 0, 0, demi_rails_act, 0,
-     demi_rails_visit, demi_rails_counts, demi_rails_grow, demi_rails_check, 0},
+     demi_rails_visit, demi_rails_counts, demi_rails_grow, demi_rails_check, 0,
+     demi_rails_whole, 0},
     {"cell",   demi_cell_on,   0, demi_cell_lead, demi_cell_move, 0, 0, 0, 0,
-     0, 0, 0, 0, 0},
+     0, 0, 0, 0, 0, demi_cell_whole, 0},
     {"events", demi_events_on, 0, 0, 0, demi_events_ready, demi_events_taken, 0, 0,
      demi_events_visit, demi_events_counts, demi_events_reserve, demi_events_check,
-     demi_events_index},
+     demi_events_index, 0, demi_events_share},
     {"fields", demi_fields_on, 0, 0, 0, 0, 0, 0, demi_fields_ended,
-     demi_fields_visit, 0, 0, demi_fields_check, 0}};
+     demi_fields_visit, 0, 0, demi_fields_check, 0, demi_fields_whole, demi_fields_share}};
 enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
 #define DEMI_FEATURE_ON(row, h) (!demi_features[row].on || demi_features[row].on(h))
 /* Runs a phase of all rows that are on, until one fails; that of member phases cannot fail. */
@@ -33708,26 +33689,6 @@ enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
         for (row = 0; row < DEMI_FEATURES; row++) \
             if (demi_features[row].column) demi_features[row].column arguments; \
     }
-/* Checks a checkpoint being read: its counts, later its values. Returns 0 with an error message. */
-static int demi_features_counts(const demi_reader *r) {
-    int row, ok = 1;
-    for (row = 0; row < DEMI_FEATURES && ok; row++)
-        if (demi_features[row].counts) ok = demi_features[row].counts(r);
-    return ok;
-}
-static int demi_features_sane(const demi_reader *r) {
-    int row, ok = 1;
-    for (row = 0; row < DEMI_FEATURES && ok; row++)
-        if (demi_features[row].sane) ok = demi_features[row].sane(r);
-    return ok;
-}
-/* Allocates for what will be read. Returns 0 if memory ran out. */
-static int demi_features_room(dem_world *t) {
-    int row, ok = 1;
-    for (row = 0; row < DEMI_FEATURES && ok; row++)
-        if (demi_features[row].room) ok = demi_features[row].room(t);
-    return ok;
-}
 
 /* ---------------------------------------------------------------------------------------------
    >>step
@@ -34569,7 +34530,7 @@ static dem_result demi_step_ready(dem_world *h) {
     dem_result result = demi_dt_settle(h);
     int k;
     for (k = 0; k < DEMI_FEATURES && result == DEM_OK; k++) {
-        if (!demi_features[k].ready || !demi_features[k].on(h)) continue;
+        if (!demi_features[k].ready || !DEMI_FEATURE_ON(k, h)) continue;
         result = demi_features[k].ready(h);
         if (result == DEM_OK) result = demi_dt_settle(h);
     }
@@ -35616,6 +35577,58 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
    whose row is marked DEMI_FREE may differ (threads, allocator, allow_large_dt, user pointers). A
    checkpoint holds the values, so that an error message can name the field and both values.
    --------------------------------------------------------------------------------------------- */
+/* --- values of fields as bytes of a file and as words; changes of a checkpoint, slabs and reports
+       show them. --- */
+enum { DEMI_ROW_MOST = DEM_GROUPS*24 };         /* bytes of a field in the file, at most */
+/* Writes the value of a field to `out` in the form of the file, r->size bytes. */
+static void demi_row_value(const demi_field_row *r, const void *item, void *out) {
+    const char *at = (const char *)item + r->offset, *text;
+    memset(out, 0, r->size);
+    if (r->type == 'h') {
+        const uint64_t digest = r->digest(item);
+        memcpy(out, &digest, sizeof digest);
+    } else if (r->type == 'p') {
+        char none[sizeof(void (*)(void))] = "";
+        const int32_t one = memcmp(at, none, sizeof none) != 0;
+        memcpy(out, &one, sizeof one);
+    } else if (r->type == 't') {
+        memcpy(&text, at, sizeof text);
+        if (text) strncpy((char *)out, text, r->size - 1);
+    } else memcpy(out, at, r->size);
+}
+/* Prints element k of a value in the form of the file, for an error message. digits: significant
+   digits of reals. */
+static void demi_row_print(const demi_field_row *r, const char *value, size_t k, int digits,
+                                 char *out, size_t size) {
+    const char *word = r->words;
+    int32_t i = 0;
+    uint64_t u;
+    dem_real x;
+    double d;
+    switch (r->type) {
+    case 'i': case 'e': case 'p':
+        memcpy(&i, value + 4*k, sizeof i);
+        for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
+            word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
+        if (word) { demi_words(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
+        memcpy(&i, value + 4*k, sizeof i);
+        demi_words(out, size, "%ld", (long)i);
+        break;
+    case 'u':
+        memcpy(&u, value + 8*k, sizeof u);
+        demi_words(out, size, "%llu", (unsigned long long)u);
+        break;
+    case 'd':
+        memcpy(&d, value + 8*k, sizeof d);
+        demi_words(out, size, "%.*g", digits, d);
+        break;
+    case 't': demi_words(out, size, "\"%.40s\"", value); break;
+    default:
+        memcpy(&x, value + sizeof x*k, sizeof x);
+        demi_words(out, size, "%.*g", digits, (double)x);
+    }
+}
+
 /* Digests of the geometry of a shape, without values that are derived from it. Pieces are hashed
    member by member, because the struct has padding. */
 static uint64_t demi_digest_spheres(const void *item) {
@@ -39750,6 +39763,26 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
    possible. Therefore every count is checked before memory is allocated for it, and every index
    and length before it is used. This part owns demi_reader and writes all of the state.
    --------------------------------------------------------------------------------------------- */
+/* Checks a checkpoint being read: its counts, later its values. Returns 0 with an error message. */
+static int demi_features_counts(const demi_reader *r) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].counts) ok = demi_features[row].counts(r);
+    return ok;
+}
+static int demi_features_sane(const demi_reader *r) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].sane) ok = demi_features[row].sane(r);
+    return ok;
+}
+/* Allocates for what will be read. Returns 0 if memory ran out. */
+static int demi_features_room(dem_world *t) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].room) ok = demi_features[row].room(t);
+    return ok;
+}
 
 /* Gives the twin its domains and its copies of walls, fields, feeds and outlets, into which state
    is read. Returns 0 if memory ran out. */
@@ -42824,6 +42857,26 @@ DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
    happened. It calls the same functions as a run, but on a copy of struct dem_world, so a report
    changes nothing that a run uses.
    --------------------------------------------------------------------------------------------- */
+/* Prints why a chosen dt is shorter than t_c/50, and by what factor. */
+static void demi_held_report(const dem_world *w, FILE *out) {
+    const demi_held *h = &w->clock.held;
+    char who[64] = "a body";
+    if (w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
+    demi_print(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
+               h->from/(double)w->clock.dt, h->from);
+    if (h->body > 0)
+        demi_words(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body,
+                   h->contacts);
+    if (h->by == DEMI_HELD_PRESSED)
+        demi_print(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
+    else if (h->by == DEMI_HELD_RATE)
+        demi_print(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
+                   "that is used\n", (int)h->body, h->limit);
+    else if (h->by == DEMI_HELD_SPIN)
+        demi_print(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
+    else demi_print(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
+                    "used\n", h->limit);
+}
 /* Prints the levels of a hierarchical grid, and the estimated work of a search with levels and
    with one grid. */
 static void demi_levels_report(const dem_world *w, FILE *out) {
@@ -44224,25 +44277,11 @@ static void demi_slab_sums_clear(dem_world *w, int booked) {
     for (i = 0; i < w->outlet_count; i++)
         demi_rows_clear(demi_outlet_state_rows, &demi_outlet_at(w, i)->state, DEMI_SUM);
 }
-/* Copies the outlets. Every slab has all of them, and applies them to its own grains. Returns 0 if
-   memory ran out. */
-static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
-    if (!DEMI_COPY(to, to->outlets, from->outlets, from->outlet_count)) return 0;
-    to->outlet_count = from->outlet_count;
-    return (!from->bodies.zoned || demi_array_begin(to, DEMI_ZONED, &to->bodies.zoned)) &&
-        (!from->bodies.aged || demi_ages_begin(to));
-}
-/* Copies the fields. Each slab sums the contributions of its own grains. The slab with `inherit`
-   starts with the sums of the world, the others start at 0. Returns 0 if memory ran out. */
-static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
-    int i;
-    for (i = 0; i < from->field_count; i++) {
-        const demi_field *a = &from->fields[i];
-        if (dem_field_add(to, &a->desc).id != i + 1) return 0;
-        to->fields[i].next = a->next;
-        to->fields[i].samples = a->samples;
-        if (inherit) memcpy(to->fields[i].sums, a->sums, demi_field_reals(a)*sizeof(double));
-    }
+/* Copies to a slab what each feature shares. Returns 0 if memory ran out. */
+static int demi_slab_features(dem_world *slab, const dem_world *from, int first) {
+    int row;
+    for (row = 0; row < DEMI_FEATURES; row++)
+        if (demi_features[row].share && !demi_features[row].share(slab, from, first)) return 0;
     return 1;
 }
 /* Creates the world of slab `index`: the whole scene without its grains. first: the world of the
@@ -44278,8 +44317,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     if (!w->bodies.ghost || !w->bodies.slot_index || !w->bodies.slot_generation ||
         (from->bodies.orienting && !demi_orient_begin(w)) ||
         !demi_slab_shapes(w, from, first) ||
-        !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
-        !demi_slab_outlets_copy(w, from) || !demi_flush_share(w, from)) return w;
+        !demi_slab_walls(w, from, first) || !demi_slab_features(w, from, index == 0) ||
+        !demi_flush_share(w, from)) return w;
     s->head.shapes = w->shapes;                 /* for the grains of feeds */
     s->head.shape_count = w->shape_count;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
@@ -44297,7 +44336,6 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->memory_stride = from->memory_stride;     /* before its first list, too */
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
-    w->events.n.on = from->events.n.on;
     *ok = 1;
     return w;
 }
@@ -44327,23 +44365,13 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
 static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
-    int i;
-    for (i = 0; i < w->field_count; i++)
-        if (w->fields[i].desc.variance)
-            return demi_refuse(w, call, "field %d has variance %d, must be 0, because a cell may "
-                               "lie in two slabs, and neither knows the squares of the whole; "
-                               "leave variance out, or use threads", i + 1,
-                               w->fields[i].desc.variance);
+    int row;
+    for (row = 0; row < DEMI_FEATURES; row++)
+        if (demi_features[row].whole && demi_features[row].whole(w, call) != DEM_OK)
+            return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LAWS))
         return demi_refuse(w, call, "contacts of this world are impulses, which cannot be split "
                            "into slabs; use threads");
-    if (demi_rails_in_force(w))
-        return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs "
-                           "do not pass on; use threads, or walls instead of these bodies",
-                           demi_rails_in_force(w));
-    if (w->cell.on || w->cell.side[0] > 0)
-        return demi_refuse(w, call, "the periodic cell of this world has been deformed "
-                           "(dem_cell_set), but borders of slabs do not move; use threads");
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
         return demi_refuse(w, call, "axis is %d, must be 0, 1 or 2%s; choose the one along which "
                            "the scene is longest", d->axis,

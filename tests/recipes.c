@@ -721,5 +721,44 @@ int main(int argc, char **argv) {
         CHECK(dem_world_create(&desc) == 0);
         dem_world_destroy(world);
     }
+    TEST("recipe for a feature: a limit of kicks pushes deep overlaps apart gently, with slabs and after a restart too") {
+        const char *path = "build/recipes/kicks.ckpt";
+        double speed[4];
+        int k;
+        for (k = 0; k < 4; k++) {                  /* no limit; a limit; after a restart; two slabs */
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_slabs_desc split = DEM_SLABS_DESC;
+            dem_body b[2];
+            dem_world *w;
+            dem_material m;
+            int i;
+            desc.dt = DEM_R(1e-6);
+            desc.domain = box_of(-1, -1, -1, 1, 1, 1);
+            w = dem_world_create(&desc);
+            m = scene_material(w, 1e8, 0.5, 0, 0);
+            for (i = 0; i < 2; i++) b[i] = dem_sphere_add(w, m, DEM_R(0.005), at(i ? 0.003 : -0.003, 0, 0));
+            if (k) CHECK_EQ(dem_world_kick_limit_set(w, DEM_R(1e-3)), DEM_OK);
+            if (k == 2) {
+                CHECK_EQ(dem_checkpoint_write(w, path), DEM_OK);
+                CHECK_EQ(dem_world_kick_limit_set(w, 0), DEM_OK);
+                CHECK_EQ(dem_checkpoint_read(w, path), DEM_OK);
+            }
+            if (k == 3) {
+                dem_slabs *slabs;
+                split.count = 2;
+                slabs = dem_slabs_create(w, &split);
+                CHECK_EQ(dem_slabs_step(slabs, 10), DEM_OK);
+                CHECK_EQ(dem_slabs_collect(slabs, w), DEM_OK);
+                dem_slabs_destroy(slabs);
+            } else CHECK_EQ(dem_world_step(w, 10), DEM_OK);
+            speed[k] = (double)scene_state(w, b[1]).velocity.x;
+            CHECK_EQ(dem_world_kick_limit_set(w, -1), DEM_ERROR_ARGUMENT);
+            dem_world_destroy(w);
+        }
+        CHECK(speed[0] > 0.1);
+        CHECK_NEAR(speed[1], 0.01, 1e-3);
+        CHECK_NEAR(speed[2], speed[1], 0);
+        CHECK_NEAR(speed[3], speed[1], 1e-12);
+    }
     return test_end();
 }

@@ -400,9 +400,9 @@
    These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
    (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh
    format (>>add-format), effect in the report (>>add-effect), array with a value for each body
-   (>>add-array), joint (>>add-joint) or option (>>add-option). docs/extending.md and its four
-   sister pages walk through most of them, and `make recipes` tests these pages. struct dem_world in
-   >>layout says which part owns which data.
+   (>>add-array), feature of the step (>>add-feature), joint (>>add-joint) or option (>>add-option).
+   docs/extending.md and its four sister pages walk through most of them, and `make recipes` tests
+   these pages. struct dem_world in >>layout says which part owns which data.
 
    --- 15. Glossary ---
 

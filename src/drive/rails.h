@@ -424,3 +424,9 @@ static int demi_rails_check(const demi_reader *r) {
     }
     return 1;
 }
+static dem_result demi_rails_whole(dem_world *w, const char *call) {
+    if (!demi_rails_in_force(w)) return DEM_OK;
+    return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs do "
+                       "not pass on; use threads, or walls instead of these bodies",
+                       demi_rails_in_force(w));
+}

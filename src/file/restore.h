@@ -8,6 +8,26 @@
    possible. Therefore every count is checked before memory is allocated for it, and every index
    and length before it is used. This part owns demi_reader and writes all of the state.
    --------------------------------------------------------------------------------------------- */
+/* Checks a checkpoint being read: its counts, later its values. Returns 0 with an error message. */
+static int demi_features_counts(const demi_reader *r) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].counts) ok = demi_features[row].counts(r);
+    return ok;
+}
+static int demi_features_sane(const demi_reader *r) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].sane) ok = demi_features[row].sane(r);
+    return ok;
+}
+/* Allocates for what will be read. Returns 0 if memory ran out. */
+static int demi_features_room(dem_world *t) {
+    int row, ok = 1;
+    for (row = 0; row < DEMI_FEATURES && ok; row++)
+        if (demi_features[row].room) ok = demi_features[row].room(t);
+    return ok;
+}
 
 /* Gives the twin its domains and its copies of walls, fields, feeds and outlets, into which state
    is read. Returns 0 if memory ran out. */

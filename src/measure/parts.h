@@ -5,6 +5,58 @@
    whose row is marked DEMI_FREE may differ (threads, allocator, allow_large_dt, user pointers). A
    checkpoint holds the values, so that an error message can name the field and both values.
    --------------------------------------------------------------------------------------------- */
+/* --- values of fields as bytes of a file and as words; changes of a checkpoint, slabs and reports
+       show them. --- */
+enum { DEMI_ROW_MOST = DEM_GROUPS*24 };         /* bytes of a field in the file, at most */
+/* Writes the value of a field to `out` in the form of the file, r->size bytes. */
+static void demi_row_value(const demi_field_row *r, const void *item, void *out) {
+    const char *at = (const char *)item + r->offset, *text;
+    memset(out, 0, r->size);
+    if (r->type == 'h') {
+        const uint64_t digest = r->digest(item);
+        memcpy(out, &digest, sizeof digest);
+    } else if (r->type == 'p') {
+        char none[sizeof(void (*)(void))] = "";
+        const int32_t one = memcmp(at, none, sizeof none) != 0;
+        memcpy(out, &one, sizeof one);
+    } else if (r->type == 't') {
+        memcpy(&text, at, sizeof text);
+        if (text) strncpy((char *)out, text, r->size - 1);
+    } else memcpy(out, at, r->size);
+}
+/* Prints element k of a value in the form of the file, for an error message. digits: significant
+   digits of reals. */
+static void demi_row_print(const demi_field_row *r, const char *value, size_t k, int digits,
+                                 char *out, size_t size) {
+    const char *word = r->words;
+    int32_t i = 0;
+    uint64_t u;
+    dem_real x;
+    double d;
+    switch (r->type) {
+    case 'i': case 'e': case 'p':
+        memcpy(&i, value + 4*k, sizeof i);
+        for (word = r->type == 'i' ? 0 : word; word && i > 0; i--)
+            word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
+        if (word) { demi_words(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
+        memcpy(&i, value + 4*k, sizeof i);
+        demi_words(out, size, "%ld", (long)i);
+        break;
+    case 'u':
+        memcpy(&u, value + 8*k, sizeof u);
+        demi_words(out, size, "%llu", (unsigned long long)u);
+        break;
+    case 'd':
+        memcpy(&d, value + 8*k, sizeof d);
+        demi_words(out, size, "%.*g", digits, d);
+        break;
+    case 't': demi_words(out, size, "\"%.40s\"", value); break;
+    default:
+        memcpy(&x, value + sizeof x*k, sizeof x);
+        demi_words(out, size, "%.*g", digits, (double)x);
+    }
+}
+
 /* Digests of the geometry of a shape, without values that are derived from it. Pieces are hashed
    member by member, because the struct has padding. */
 static uint64_t demi_digest_spheres(const void *item) {

@@ -4,6 +4,26 @@
    happened. It calls the same functions as a run, but on a copy of struct dem_world, so a report
    changes nothing that a run uses.
    --------------------------------------------------------------------------------------------- */
+/* Prints why a chosen dt is shorter than t_c/50, and by what factor. */
+static void demi_held_report(const dem_world *w, FILE *out) {
+    const demi_held *h = &w->clock.held;
+    char who[64] = "a body";
+    if (w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
+    demi_print(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
+               h->from/(double)w->clock.dt, h->from);
+    if (h->body > 0)
+        demi_words(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body,
+                   h->contacts);
+    if (h->by == DEMI_HELD_PRESSED)
+        demi_print(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
+    else if (h->by == DEMI_HELD_RATE)
+        demi_print(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
+                   "that is used\n", (int)h->body, h->limit);
+    else if (h->by == DEMI_HELD_SPIN)
+        demi_print(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
+    else demi_print(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
+                    "used\n", h->limit);
+}
 /* Prints the levels of a hierarchical grid, and the estimated work of a search with levels and
    with one grid. */
 static void demi_levels_report(const dem_world *w, FILE *out) {

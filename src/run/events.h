@@ -646,6 +646,11 @@ DEM_API int dem_events_open_each(dem_world *w, dem_event_fn fn, void *user) {
 }
 /* Recording in a step, see >>features. */
 static int demi_events_on(const dem_world *h) { return h->events.n.on; }
+static int demi_events_share(dem_world *slab, const dem_world *from, int first) {
+    (void)first;
+    slab->events.n.on = from->events.n.on;
+    return 1;
+}
 static dem_result demi_events_ready(dem_world *h) {
     return demi_events_room(h) ? DEM_OK : demi_no_memory(h, "dem_world_step");
 }

@@ -1,9 +1,9 @@
 /* ---------------------------------------------------------------------------------------------
    >>features
-   What optional features add to a step and to a checkpoint: a row of functions for each, null where
-   it adds nothing. A step (>>step) runs its phases over all rows that are on, in this order; the
-   checkpoint runs its own over all rows. Neither knows a feature by name. h is the head of a team
-   or a single world; w is a member.
+   What optional features add to a step, to a checkpoint and to slabs: a row of functions for each,
+   null where it adds nothing. A step (>>step) runs its phases over all rows that are on, in this
+   order; checkpoints and slabs run theirs over all rows. None of them knows a feature by name. h is
+   the head of a team or a single world; w is a member.
    --------------------------------------------------------------------------------------------- */
 typedef struct demi_feature {
     const char *name;
@@ -22,33 +22,39 @@ typedef struct demi_feature {
     int (*room)(dem_world *t);                  /* allocates; 0: memory ran out */
     int (*sane)(const demi_reader *r);          /* 0 with a message: an impossible value */
     void (*resumed)(dem_world *t);              /* computes what follows from the state */
+    /* slabs */
+    dem_result (*whole)(dem_world *w, const char *call);       /* fails if slabs cannot have it */
+    int (*share)(dem_world *slab, const dem_world *from, int first);   /* copies what each slab has;
+                                                   first: to the first one; 0: memory ran out */
 } demi_feature;
 #ifdef DEM_NO_IMPULSES
 #define DEMI_JOINTS_FEATURE
 #else
 #define DEMI_JOINTS_FEATURE \
     {"joints", 0, 0, 0, 0, 0, 0, 0, 0, \
-     demi_joints_visit, 0, demi_joints_grow, demi_joints_check, 0},
+     demi_joints_visit, 0, demi_joints_grow, demi_joints_check, 0, 0, 0},
 #endif
+/* >>add-feature: add a row here and its functions above. */
 static const demi_feature demi_features[] = {
     DEMI_JOINTS_FEATURE
     {"feeds",  demi_feeds_on,  demi_feeds_ready, 0, 0, 0, 0, 0, 0,
-     demi_feeds_visit, 0, 0, demi_feeds_check, 0},
+     demi_feeds_visit, 0, 0, demi_feeds_check, 0, 0, 0},
     {"outlets", 0, 0, 0, 0, 0, 0, 0, 0,
-     demi_outlets_visit, 0, 0, 0, 0},
+     demi_outlets_visit, 0, 0, 0, 0, 0, demi_outlets_share},
     {"growth", demi_growth_on, demi_radii_grow, 0, 0, 0, 0, 0, 0,
-     0, 0, 0, 0, 0},
+     0, 0, 0, 0, 0, 0, 0},
     {"servo",  0, 0, demi_servos_lead, 0, 0, 0, 0, 0,
-     0, 0, 0, 0, 0},
+     0, 0, 0, 0, 0, 0, 0},
     {"rails",  demi_rails_on,  0, 0, demi_rails_move, 0, 0, demi_rails_act, 0,
-     demi_rails_visit, demi_rails_counts, demi_rails_grow, demi_rails_check, 0},
+     demi_rails_visit, demi_rails_counts, demi_rails_grow, demi_rails_check, 0,
+     demi_rails_whole, 0},
     {"cell",   demi_cell_on,   0, demi_cell_lead, demi_cell_move, 0, 0, 0, 0,
-     0, 0, 0, 0, 0},
+     0, 0, 0, 0, 0, demi_cell_whole, 0},
     {"events", demi_events_on, 0, 0, 0, demi_events_ready, demi_events_taken, 0, 0,
      demi_events_visit, demi_events_counts, demi_events_reserve, demi_events_check,
-     demi_events_index},
+     demi_events_index, 0, demi_events_share},
     {"fields", demi_fields_on, 0, 0, 0, 0, 0, 0, demi_fields_ended,
-     demi_fields_visit, 0, 0, demi_fields_check, 0}};
+     demi_fields_visit, 0, 0, demi_fields_check, 0, demi_fields_whole, demi_fields_share}};
 enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
 #define DEMI_FEATURE_ON(row, h) (!demi_features[row].on || demi_features[row].on(h))
 /* Runs a phase of all rows that are on, until one fails; that of member phases cannot fail. */
@@ -72,23 +78,3 @@ enum { DEMI_FEATURES = sizeof demi_features/sizeof *demi_features };
         for (row = 0; row < DEMI_FEATURES; row++) \
             if (demi_features[row].column) demi_features[row].column arguments; \
     }
-/* Checks a checkpoint being read: its counts, later its values. Returns 0 with an error message. */
-static int demi_features_counts(const demi_reader *r) {
-    int row, ok = 1;
-    for (row = 0; row < DEMI_FEATURES && ok; row++)
-        if (demi_features[row].counts) ok = demi_features[row].counts(r);
-    return ok;
-}
-static int demi_features_sane(const demi_reader *r) {
-    int row, ok = 1;
-    for (row = 0; row < DEMI_FEATURES && ok; row++)
-        if (demi_features[row].sane) ok = demi_features[row].sane(r);
-    return ok;
-}
-/* Allocates for what will be read. Returns 0 if memory ran out. */
-static int demi_features_room(dem_world *t) {
-    int row, ok = 1;
-    for (row = 0; row < DEMI_FEATURES && ok; row++)
-        if (demi_features[row].room) ok = demi_features[row].room(t);
-    return ok;
-}

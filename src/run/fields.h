@@ -451,3 +451,26 @@ static int demi_fields_check(const demi_reader *r) {
             return demi_lie(r, "next sampling time of field", i);
     return 1;
 }
+static dem_result demi_fields_whole(dem_world *w, const char *call) {
+    int i;
+    for (i = 0; i < w->field_count; i++)
+        if (w->fields[i].desc.variance)
+            return demi_refuse(w, call, "field %d has variance %d, must be 0, because a cell may "
+                               "lie in two slabs, and neither knows the squares of the whole; "
+                               "leave variance out, or use threads", i + 1,
+                               w->fields[i].desc.variance);
+    return DEM_OK;
+}
+/* Each slab sums the contributions of its own grains. The first one starts with the sums of the
+   world, the others start at 0. */
+static int demi_fields_share(dem_world *slab, const dem_world *from, int first) {
+    int i;
+    for (i = 0; i < from->field_count; i++) {
+        const demi_field *a = &from->fields[i];
+        if (dem_field_add(slab, &a->desc).id != i + 1) return 0;
+        slab->fields[i].next = a->next;
+        slab->fields[i].samples = a->samples;
+        if (first) memcpy(slab->fields[i].sums, a->sums, demi_field_reals(a)*sizeof(double));
+    }
+    return 1;
+}

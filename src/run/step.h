@@ -838,7 +838,7 @@ static dem_result demi_step_ready(dem_world *h) {
     dem_result result = demi_dt_settle(h);
     int k;
     for (k = 0; k < DEMI_FEATURES && result == DEM_OK; k++) {
-        if (!demi_features[k].ready || !demi_features[k].on(h)) continue;
+        if (!demi_features[k].ready || !DEMI_FEATURE_ON(k, h)) continue;
         result = demi_features[k].ready(h);
         if (result == DEM_OK) result = demi_dt_settle(h);
     }

@@ -240,3 +240,8 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     return DEM_OK;
 }
 static int demi_cell_on(const dem_world *h) { return h->cell.on; }
+static dem_result demi_cell_whole(dem_world *w, const char *call) {
+    if (!w->cell.on && !(w->cell.side[0] > 0)) return DEM_OK;
+    return demi_refuse(w, call, "the periodic cell of this world has been deformed "
+                       "(dem_cell_set), but borders of slabs do not move; use threads");
+}

@@ -605,3 +605,11 @@ static void demi_outlets_visit(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->outlet_count; i++)
         demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
+/* Every slab has all outlets, and applies them to its own grains. */
+static int demi_outlets_share(dem_world *slab, const dem_world *from, int first) {
+    (void)first;
+    if (!DEMI_COPY(slab, slab->outlets, from->outlets, from->outlet_count)) return 0;
+    slab->outlet_count = from->outlet_count;
+    return (!from->bodies.zoned || demi_array_begin(slab, DEMI_ZONED, &slab->bodies.zoned)) &&
+        (!from->bodies.aged || demi_ages_begin(slab));
+}

@@ -70,25 +70,11 @@ static void demi_slab_sums_clear(dem_world *w, int booked) {
     for (i = 0; i < w->outlet_count; i++)
         demi_rows_clear(demi_outlet_state_rows, &demi_outlet_at(w, i)->state, DEMI_SUM);
 }
-/* Copies the outlets. Every slab has all of them, and applies them to its own grains. Returns 0 if
-   memory ran out. */
-static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
-    if (!DEMI_COPY(to, to->outlets, from->outlets, from->outlet_count)) return 0;
-    to->outlet_count = from->outlet_count;
-    return (!from->bodies.zoned || demi_array_begin(to, DEMI_ZONED, &to->bodies.zoned)) &&
-        (!from->bodies.aged || demi_ages_begin(to));
-}
-/* Copies the fields. Each slab sums the contributions of its own grains. The slab with `inherit`
-   starts with the sums of the world, the others start at 0. Returns 0 if memory ran out. */
-static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
-    int i;
-    for (i = 0; i < from->field_count; i++) {
-        const demi_field *a = &from->fields[i];
-        if (dem_field_add(to, &a->desc).id != i + 1) return 0;
-        to->fields[i].next = a->next;
-        to->fields[i].samples = a->samples;
-        if (inherit) memcpy(to->fields[i].sums, a->sums, demi_field_reals(a)*sizeof(double));
-    }
+/* Copies to a slab what each feature shares. Returns 0 if memory ran out. */
+static int demi_slab_features(dem_world *slab, const dem_world *from, int first) {
+    int row;
+    for (row = 0; row < DEMI_FEATURES; row++)
+        if (demi_features[row].share && !demi_features[row].share(slab, from, first)) return 0;
     return 1;
 }
 /* Creates the world of slab `index`: the whole scene without its grains. first: the world of the
@@ -124,8 +110,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     if (!w->bodies.ghost || !w->bodies.slot_index || !w->bodies.slot_generation ||
         (from->bodies.orienting && !demi_orient_begin(w)) ||
         !demi_slab_shapes(w, from, first) ||
-        !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
-        !demi_slab_outlets_copy(w, from) || !demi_flush_share(w, from)) return w;
+        !demi_slab_walls(w, from, first) || !demi_slab_features(w, from, index == 0) ||
+        !demi_flush_share(w, from)) return w;
     s->head.shapes = w->shapes;                 /* for the grains of feeds */
     s->head.shape_count = w->shape_count;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
@@ -143,7 +129,6 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->memory_stride = from->memory_stride;     /* before its first list, too */
     w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
     if (index > 0) demi_slab_sums_clear(w, DEMI_SUM);
-    w->events.n.on = from->events.n.on;
     *ok = 1;
     return w;
 }
@@ -173,23 +158,13 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
 static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
-    int i;
-    for (i = 0; i < w->field_count; i++)
-        if (w->fields[i].desc.variance)
-            return demi_refuse(w, call, "field %d has variance %d, must be 0, because a cell may "
-                               "lie in two slabs, and neither knows the squares of the whole; "
-                               "leave variance out, or use threads", i + 1,
-                               w->fields[i].desc.variance);
+    int row;
+    for (row = 0; row < DEMI_FEATURES; row++)
+        if (demi_features[row].whole && demi_features[row].whole(w, call) != DEM_OK)
+            return DEM_ERROR_ARGUMENT;
     if (!demi_response_is(w, DEMI_LAWS))
         return demi_refuse(w, call, "contacts of this world are impulses, which cannot be split "
                            "into slabs; use threads");
-    if (demi_rails_in_force(w))
-        return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs "
-                           "do not pass on; use threads, or walls instead of these bodies",
-                           demi_rails_in_force(w));
-    if (w->cell.on || w->cell.side[0] > 0)
-        return demi_refuse(w, call, "the periodic cell of this world has been deformed "
-                           "(dem_cell_set), but borders of slabs do not move; use threads");
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
         return demi_refuse(w, call, "axis is %d, must be 0, 1 or 2%s; choose the one along which "
                            "the scene is longest", d->axis,
