@@ -5238,7 +5238,7 @@ typedef struct demi_output {
    demi_calls has changed it, so that demi_called restores it. */
 typedef struct demi_calling { const char *who; int within, set; } demi_calling;
 
-/* How many threads a world uses, see demi_crew_end. Not part of the state. */
+/* How many threads a world uses, see demi_crew_judge. Not part of the state. */
 typedef struct demi_crew {
     int now, best;                 /* threads of this step; of steps outside trials */
     int steps, turn, fixed;        /* steps measured; kind of the last trial; 1: no trials */
@@ -6454,13 +6454,11 @@ static void demi_crew_try(demi_crew *c, int now) {
     c->steps = 0;
     c->sum = 0;
 }
-/* Measures the step and decides how many threads take the next one. */
-static void demi_crew_end(dem_world *w) {
+/* Decides by the time of a step, s, how many threads take the next one. */
+static void demi_crew_judge(dem_world *w, double took) {
     demi_crew *c = &w->crew;
-    const double took = demi_crew_varies(w) ? demi_clock() - c->begun : 0;
     const int first = !(c->cost > 0), trial = c->now != c->best;
     double lost;
-    if (!demi_crew_varies(w)) return;
     if (!trial) c->since += took;
     if (w->clock.rebuilds != c->rebuilds) return;
     c->sum += took;
@@ -6484,6 +6482,9 @@ static void demi_crew_end(dem_world *w) {
         demi_crew_try(c, first || slow || c->since > c->wait
                       ? demi_crew_other(c, w->desc.threads, slow) : c->best);
     }
+}
+static void demi_crew_end(dem_world *w) {
+    if (demi_crew_varies(w)) demi_crew_judge(w, demi_clock() - w->crew.begun);
 }
 
 /* ---------------------------------------------------------------------------------------------

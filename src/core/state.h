@@ -218,7 +218,7 @@ typedef struct demi_output {
    demi_calls has changed it, so that demi_called restores it. */
 typedef struct demi_calling { const char *who; int within, set; } demi_calling;
 
-/* How many threads a world uses, see demi_crew_end. Not part of the state. */
+/* How many threads a world uses, see demi_crew_judge. Not part of the state. */
 typedef struct demi_crew {
     int now, best;                 /* threads of this step; of steps outside trials */
     int steps, turn, fixed;        /* steps measured; kind of the last trial; 1: no trials */
