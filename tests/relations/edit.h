@@ -90,6 +90,20 @@ static void rel_leave_fields(rel_scene *s, int call, const char *const *names) {
             for (j = s->op[i].count - 1; s->op[i].call == call && j >= 0; j--)
                 if (s->op[i].set[j].field == rel_field_of(call, *names)) rel_drop_set(&s->op[i], j);
 }
+/* Coefficients are in N/m^(3/2) with Hertz's law and in N/m with the others, whatever the law (dem_contact.kn), and
+   without law_stiffness the time step is advised for the law of the scene: it becomes one with the units of the
+   user-defined law. */
+static void rel_fit_units(rel_scene *s) {
+    static const char *const linear[] = {"law_plain", "law_stepped", "law_hysteretic", 0};
+    static const char *const hertz[] = {"law_spring", "law_mindlin", "law_rescaled", 0};
+    const rel_set *law = rel_given_in(&s->op[0], "law");
+    const int code = law ? (int)law->v[0] : -1;
+    int k;
+    for (k = 0; linear[k] && law; k++)
+        if (code == rel_code_of(linear[k])) rel_put(&s->op[0], "normal_law", DEM_NORMAL_LINEAR);
+    for (k = 0; hertz[k] && law; k++)
+        if (code == rel_code_of(hertz[k])) rel_put(&s->op[0], "normal_law", DEM_NORMAL_HERTZ);
+}
 /* Adds a call at the end of a scene. */
 static rel_op *rel_more(rel_scene *s, int call, int step) {
     rel_op *op = &s->op[s->count++];

@@ -75,6 +75,7 @@ static void rel_print_head(const rel_program *p, const char *why) {
     rel_print_helpers(p->out, s);
     if (rel_is(p, rel_joints)) rel_line(p->out, 0, rel_text_joint_wrong);
     if (rel_is(p, rel_samples)) rel_line(p->out, 0, rel_text_samples_wrong);
+    if (rel_is(p, rel_left)) rel_line(p->out, 0, rel_text_outlet_wrong);
     if (rel_is(p, rel_slabs_beside)) rel_line(p->out, 0, rel_text_touch);
 }
 /* Do the runs fail, or does one of them? */
@@ -348,12 +349,11 @@ static int rel_print_physics(const rel_program *p) {
 /* main of the relations that ask about one scene (relate_asked.h). */
 static void rel_print_asked(const rel_program *p) {
     const rel_scene *s = p->s;
-    const rel_set *box = 0;
-    int i;
+    int i, outlet = -1;
     fprintf(p->out, "int main(void) {\n    dem_world *w = run(0);\n    int wrong = 0;\n");
     for (i = 0; i < s->count; i++) {
         const rel_op *op = &s->op[i];
-        if (op->call == REL_OUTLET) box = rel_given(op, "d.box", 5);
+        if (op->call == REL_OUTLET && !(rel_or(op, "keep", 0) > 0)) outlet = i;
         rel_new_page(0);
         if (rel_is(p, rel_joints) && op->call == REL_JOINT) {
             const rel_set *b = rel_given(op, "d.b", 3);
@@ -381,10 +381,14 @@ static void rel_print_asked(const rel_program *p) {
                 "    for (i = 0; i < %d; i++) {\n        if (dem_body_get(w, b[i], &s) == DEM_OK || "
                     "dem_body_get(all, b[i], &s) != DEM_OK) continue;\n",
                 rel_bodies(s));
-        for (i = 0; i < 3 && box; i++) {
-            fprintf(p->out, "        wrong |= s.position.%c < %s - 1e-9", "xyz"[i], rel_number(box->v[i]));
-            fprintf(p->out, " || s.position.%c > %s + 1e-9;\n", "xyz"[i], rel_number(box->v[3 + i]));
-        }
+        fprintf(p->out, "        wrong |= outlet_wrong(all, ");
+        rel_new_page(0);
+        rel_name(s, outlet < 0 ? -1 : (int)rel_or(&s->op[outlet], "frame", -1));
+        fprintf(p->out, "%s, (double[]){", strcmp(rel_paper[0], "none") ? rel_paper[0] : "(dem_wall){0}");
+        for (i = 0; i < 6 && outlet >= 0; i++)
+            fprintf(p->out, "%s%s", i ? ", " : "", rel_number(rel_given(&s->op[outlet], "d.box", 5)->v[i]));
+        fprintf(p->out, "},\n            %s, (double[]){s.position.x, s.position.y, s.position.z});\n",
+            rel_number(outlet < 0 ? 0 : rel_or(&s->op[outlet], "beyond", 0)));
         fprintf(p->out, "        printf(\"body %%d left at %%.9g %%.9g %%.9g m\\n\", i, s.position.x, s.position.y, "
             "s.position.z);\n    }\n");
     }

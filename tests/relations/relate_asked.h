@@ -147,21 +147,42 @@ static int rel_go_until(rel_run *r, const rel_scene *s, int most) {
     }
     return 0;
 }
-/* What leaves through an outlet is in its box at the end of the step, as a run without the outlet shows. */
+/* Is a place outside the region of an outlet? The box and `beyond` are in the frame of its wall (dem_outlet_desc). */
+CODE(outlet_wrong, static int outlet_wrong(dem_world *w, dem_wall frame, const double *box, double beyond,
+    const double *x) {
+    dem_pose p = {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, {0, 0, 0}};
+    double at[3] = {0, 0, 0};
+    int k;
+    int wrong;
+    if (frame.id && dem_wall_pose_get(w, frame, &p) != DEM_OK) return 1;
+    for (k = 0; k < 3; k++) {
+        at[k] = p.rotation[k]*(x[0] - p.position.x);
+        at[k] += p.rotation[3 + k]*(x[1] - p.position.y) + p.rotation[6 + k]*(x[2] - p.position.z);
+    }
+    wrong = hypot(at[0], at[1]) < beyond - 1e-9;
+    for (k = 0; k < 3; k++) wrong |= at[k] < box[k] - 1e-9 || at[k] > box[3 + k] + 1e-9;
+    return wrong;
+})
+/* What leaves through an outlet is in its region at the end of the step, as a run without the outlet shows. In a
+   periodic world, a region in the frame of a wall can reach beyond the domain, where images of bodies are. */
 static int rel_left(rel_case *c) {
     static rel_run with, without;
     static rel_scene open;
     const rel_set *box = 0;
-    int i, k, n = 0, step, result = REL_HOLDS;
+    double beyond = 0;
+    int i, n = 0, frame = -1, step, result = REL_HOLDS;
+    dem_wall wall = {0};
     if (!c->ran) return REL_SKIPPED;
     rel_copy(&open, c->s);
     for (i = 0; i < open.count; i++)
         if (open.op[i].call == REL_OUTLET && !(rel_or(&open.op[i], "keep", 0) > 0)) {
             box = rel_find(&open.op[i], "box");
+            beyond = rel_or(&open.op[i], "beyond", 0);
+            frame = (int)rel_or(&open.op[i], "frame", -1);
             open.op[i].step = c->s->steps + 1; /* never */
             n++;
         }
-    if (n != 1) return REL_SKIPPED;
+    if (n != 1 || (frame >= 0 && rel_find(&open.op[0], "boundary"))) return REL_SKIPPED;
     memset(&without, 0, sizeof without);
     step = rel_go_until(&with, c->s, c->s->steps);
     if (step && dem_body_counts_get(with.w).left && rel_go_until(&without, &open, step) == step)
@@ -172,10 +193,10 @@ static int rel_left(rel_case *c) {
                 dem_body_get(with.w, with.made[i].body, &b) == DEM_OK ||
                 dem_body_get(without.w, without.made[i].body, &b) != DEM_OK) continue;
             at[0] = (double)b.position.x; at[1] = (double)b.position.y; at[2] = (double)b.position.z;
-            for (k = 0; k < 3; k++)
-                if (at[k] < box->v[k] - 1e-9 || at[k] > box->v[3 + k] + 1e-9)
-                    result = rel_broken(c, "at step %d a body leaves outside the outlet: %.9g m is not from %.9g to "
-                                        "%.9g", step, at[k], box->v[k], box->v[3 + k]);
+            if (frame >= 0) wall.id = without.made[frame].id;
+            if (outlet_wrong(without.w, wall, box->v, beyond, at))
+                result = rel_broken(c, "at step %d a body leaves outside the outlet, at %.9g, %.9g, %.9g m", step,
+                                    at[0], at[1], at[2]);
         }
     rel_end(&with);
     if (without.w) rel_end(&without);

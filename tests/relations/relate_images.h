@@ -208,16 +208,21 @@ static int rel_translated(rel_case *c) {
 }
 /* Leaves out what is at rest, moves as prescribed, or depends on velocities: all but walls and bodies alone. What
    joints may do depends on the kinetic energy of what they join (docs/impulses.md). */
-static int rel_leave_frame(rel_case *c) {
+static int rel_leave_frame(rel_case *c, double faster /* m/s */) {
     static const int without[] = {REL_MOTION, REL_TABLE, REL_FIX, REL_FEED, REL_FEED_SIZES, REL_FILL, REL_FILL_SHAPE,
         REL_SPHERES, REL_TEMPERATURE, REL_PUSH, REL_OUTLET, REL_RAIL, REL_CELL, REL_FIELD,
         REL_WALL_REMOVE, REL_JOINT, -1};
     static const char *const fields[] = {"force", "body_force", "domain", "boundary", 0};
+    double speed = 0;
+    int k;
+    for (k = 0; k < c->base.marks; k++) speed = fmax(speed, c->base.mark[k].speed);
     rel_copy(&rel_own, c->s);
     rel_leave_calls(&rel_own, without, 0);
     rel_leave_fields(&rel_own, REL_WORLD, fields);
-    /* 0: from the speed of the fastest body */
-    if (rel_has(c, "impulses")) rel_put(&rel_own.op[0], "law_range", 5e-4);
+    /* 0: from the speed of the fastest body. A step fails if a body moves farther than half of it, and bodies are
+       faster in the image; marks do not see the speeds of all steps. */
+    if (rel_has(c, "impulses"))
+        rel_put(&rel_own.op[0], "law_range", fmax(5e-4, 3*(speed + faster)*(double)dem_counters_get(c->base.w).dt));
     return rel_instead(c);
 }
 static int rel_galilei(rel_case *c) {
@@ -225,7 +230,7 @@ static int rel_galilei(rel_case *c) {
     const rel_how how = {0};
     rel_map m = rel_same;
     int i, k;
-    if (!c->ran || !rel_leave_frame(c)) return REL_SKIPPED;
+    if (!c->ran || !rel_leave_frame(c, sqrt(V[0]*V[0] + V[1]*V[1] + V[2]*V[2]))) return REL_SKIPPED;
     rel_copy(&rel_image, c->s);
     for (i = 0; i < c->s->count; i++) {
         rel_op *op = &rel_image.op[i];
@@ -249,16 +254,11 @@ static int rel_scaled(rel_case *c) {
     rel_map m = rel_same;
     rel_run other;
     int k, i, e, ran, result = REL_HOLDS;
-    const rel_set *law;
     /* products of what is larger do not underflow */
     const double least = sizeof(dem_real) == sizeof(double) ? 1e-100 : 1e-20;
     if (!c->ran || rel_code_flag(c, 0)) return REL_SKIPPED;
     rel_copy(&rel_own, c->s);
-    law = rel_given_in(&rel_own.op[0], "law");
-    /* coefficients are in N/m^(3/2) with Hertz's law and in N/m with the others, whatever the law (dem_contact.kn) */
-    if (law && ((int)law->v[0] == rel_code_of("law_plain") || (int)law->v[0] == rel_code_of("law_stepped")))
-        rel_put(&rel_own.op[0], "normal_law", DEM_NORMAL_LINEAR);
-    if (law && (int)law->v[0] == rel_code_of("law_spring")) rel_put(&rel_own.op[0], "normal_law", DEM_NORMAL_HERTZ);
+    rel_fit_units(&rel_own);
     if (!rel_instead(c)) return REL_SKIPPED;
     /* square, cube and fourth roots of these are exact */
     m.length = ldexp(1, 12*rel_below(&c->rng, 3) - 12);
@@ -268,7 +268,7 @@ static int rel_scaled(rel_case *c) {
     rel_image.unit[0] = m.length;
     rel_image.unit[1] = m.time;
     if ((rel_has(c, "linear") || rel_has(c, "hysteretic") || rel_has(c, "own law") || rel_has(c, "law by rows") ||
-         rel_has(c, "law of stages")) && !rel_has(c, "stiffness"))
+         rel_has(c, "law of stages") || rel_has(c, "rules of the mill")) && !rel_has(c, "stiffness"))
         return rel_near(c, &rel_image, &how, &m, "in other units");     /* fifth roots are rounded */
     ran = c->other_ran = rel_go(&other, &rel_image, &how);
     c->image = &rel_image;

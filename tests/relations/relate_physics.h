@@ -258,6 +258,9 @@ static int rel_energy(rel_case *c) {
     double share;
     with.ledger = 1;
     if (!c->ran || rel_has(c, "forward Euler")) return REL_SKIPPED;
+    rel_copy(&rel_own, c->s);
+    rel_fit_units(&rel_own);
+    if (!rel_instead(c)) return REL_SKIPPED;
     if (!rel_go(&other, c->s, &with)) { rel_end(&other); return REL_SKIPPED; }
     share = rel_step_error(c, &other);
     for (k = 0; k < other.marks && result == REL_HOLDS; k++) {
@@ -281,6 +284,9 @@ static int rel_no_gain(rel_case *c) {
     double share;
     with.ledger = 1;
     if (!c->ran || rel_has(c, "forward Euler")) return REL_SKIPPED;
+    rel_copy(&rel_own, c->s);
+    rel_fit_units(&rel_own);
+    if (!rel_instead(c)) return REL_SKIPPED;
     if (!rel_go(&other, c->s, &with)) { rel_end(&other); return REL_SKIPPED; }
     share = rel_step_error(c, &other);
     for (k = 0; k < other.marks && result == REL_HOLDS; k++) {
