@@ -256,7 +256,8 @@ static int rel_scaled(rel_case *c) {
     int k, i, e, ran, result = REL_HOLDS;
     /* products of what is larger do not underflow */
     const double least = sizeof(dem_real) == sizeof(double) ? 1e-100 : 1e-20;
-    if (!c->ran || rel_code_flag(c, 0)) return REL_SKIPPED;
+    /* "F in N and w in rad/s compared as printed there" (dem_law_roll_step) */
+    if (!c->ran || rel_code_flag(c, 0) || rel_has(c, "step rolling")) return REL_SKIPPED;
     rel_copy(&rel_own, c->s);
     rel_fit_units(&rel_own);
     if (!rel_instead(c)) return REL_SKIPPED;
