@@ -109,6 +109,33 @@ DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
     return !(v->gap[k] > v->gone) &&
            !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
+/* Corrects the contact points from `from` on for open rings (>>touch): those of the image at which
+   the view is or, where the surface continues in others, of all images; `start` is before these. */
+static void demi_view_rings(const demi_view *start, const demi_part *part, dem_real within,
+                            dem_real near_by, int from, demi_places *p) {
+    const int numbers = start->wall->number_count, all = start->wall->wraps, offset = p->offset;
+    demi_view v = *start;
+    demi_ring ring;
+    int q;
+    for (q = from; q < p->count && !(p->at[q].share < DEM_R(-1e-3)); q++) continue;
+    if (q == p->count) return;                  /* no negative weight */
+    memset(&ring, 0, sizeof ring);
+    ring.link = v.w->touching_links + v.w->domains[v.d].touching_first;
+    for (ring.offset = all ? 0 : offset; !all || demi_view_next(&v); ring.offset += numbers) {
+        for (q = 0; q < v.count; q++)
+            demi_links_add(v.wall, v.element[q], v.x, part, within, &ring);
+        if (!all) break;
+    }
+    if (all) demi_links_share(&ring, numbers, near_by);
+    demi_places_rings(&ring, within, demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2), p);
+    p->offset = offset;
+    for (v = *start, ring.offset = 0; all && demi_view_next(&v); ring.offset += numbers)
+        for (q = from; q < p->count; q++)
+            if (p->at[q].element/numbers == ring.offset/numbers) {
+                p->at[q].shift = v.shift;
+                p->at[q].base = v.base;
+            }
+}
 /* Finds the contact points of a sphere of radius r, or of an ellipsoid (`part` not null), with a
    surface of facets, in world axes. Overlaps are r minus the distance, or 1 - W0. Points within
    `range` (m) are included, with negative overlaps. Returns their number. */
@@ -119,6 +146,7 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
     const dem_real *R = wall->pose.rotation;
     const dem_real touch = part ? DEM_R(1) : r;
     const dem_real within = touch + (part ? range/demi_part_thin(part) : range);
+    const dem_real near_by = within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9));
     demi_places p = demi_places_begin(start, out);
     const int numbers = wall->number_count;
     int k, q, from, one, reached;
@@ -139,15 +167,11 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
         for (q = 0; q < v.count && part; q++)
             if (!(v.gap[q] > v.gone))
                 demi_facet_places(wall, v.element[q], v.x, part, within, &p);
-        for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
-        if (q < p.count)                        /* a negative weight: is it an open ring? */
-            demi_places_rings(wall, v.element, v.count, v.x, part, within,
-                              demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
-                              v.w->touching_links + v.w->domains[v.d].touching_first, &p);
+        if (!wall->wraps) demi_view_rings(&v, part, within, near_by, from, &p);
         for (q = from; q < p.count; q++) { p.at[q].shift = v.shift; p.at[q].base = v.base; }
     }
-    if (p.count > 1 || (p.count && p.at->share < 1))
-        demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
+    if (wall->wraps) demi_view_rings(start, part, within, near_by, 0, &p);
+    if (p.count > 1 || (p.count && p.at->share < 1)) demi_places_merge(&p, near_by);
     for (k = 0; k < p.count; k++) {
         demi_touching *t = p.at + k;
         dem_vec3 to = t->point, n = t->point;

@@ -123,8 +123,9 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
            E = X + D h(D/U1),    h(q) = (3 - 2 t) t^2, t = 2 q - 1/2 within 0 .. 1
    A dimple that is reached down to its tip is an almost closed ring: D is small, and E is X, which
    is smooth. An open ring counts as one piece; which of its sides are nearest may change at any
-   moment, as on the medial line of a single wall. Energy is conserved in both cases. Rings across a
-   periodic face are not detected. --- */
+   moment, as on the medial line of a single wall. Energy is conserved in both cases. Where a
+   surface continues in its periodic images, or in the next cell of a tessellation, a ring may
+   extend over several of these: what they share has one number. --- */
 /* Orders links: sides before corners, then by number and facet. */
 static int demi_link_compare(const void *x, const void *y) {
     const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
@@ -143,68 +144,87 @@ static int demi_link_root(demi_link *link, int i) {
     while (link[i].root != i) i = link[i].root = link[link[i].root].root;
     return i;
 }
-/* The facets within reach, and the nearest contact point. */
+/* The facets within reach, the links of their sides and corners, and the nearest contact point. */
 typedef struct demi_ring {
-    int facets;
-    int32_t number;
+    demi_link *link;
+    int facets, links;
+    int32_t number, offset;        /* offset: added to numbers, as in demi_places */
     dem_real distance;
     dem_vec3 point;
 } demi_ring;
-/* Adds a side (b: its other end) or corner (b null) of a facet, if it is within reach: its numbers
-   and nearest point. The result is the same, to the bit, from every facet at the side: it is
-   computed from the end with the lower number. Returns the new number of links. */
-static int demi_link_add(demi_link *link, int count, int facet, dem_real within, int32_t number,
-                         const dem_vec3 *a, const dem_vec3 *b, const int32_t *ends) {
-    demi_link *to = &link[count];
+/* Adds a side (b: its other end) or corner (b null) of the last facet, if it is within reach: its
+   numbers and nearest point. The result is the same, to the bit, from every facet at the side: it
+   is computed from the end with the lower number. Returns the link, null if it is out of reach. */
+static demi_link *demi_link_add(demi_ring *ring, dem_real within, int32_t number, const dem_vec3 *a,
+                                const dem_vec3 *b, const int32_t *ends) {
+    demi_link *to = ring->link + ring->links;
     const int turn = b && ends[0] > ends[1];
     int where = 4;
     to->point = b ? demi_side_point(turn ? *b : *a, turn ? *a : *b, 0, 1, &where) : *a;
     to->distance = demi_length(to->point);
-    if (!(to->distance < within)) return count;
+    if (!(to->distance < within)) return 0;
+    to->middle = b ? demi_scale(demi_add(*a, *b), DEM_R(0.5)) : *a;
     to->corner = !b;
-    to->facet = facet;
+    to->facet = ring->facets;
     to->number = number;
     to->place = !b || where < 4 ? number : ends[turn ? 5 - where : where - 4];
     to->sides[0] = to->sides[1] = -1;
-    return count + 1;
+    ring->links++;
+    return to;
 }
-/* Adds the sides and corners of element e, if it is within reach. Returns the new number of
-   links. */
-static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
-                          dem_real within, demi_link *link, int count, demi_ring *ring) {
-    const int edges = wall->element_count, corners = edges + wall->edge_count;
+/* Adds element e with its sides and corners, if it is within reach. */
+static void demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                           dem_real within, demi_ring *ring) {
+    const int faces = ring->offset, edges = faces + wall->element_count;
+    const int corners = edges + wall->edge_count;
     const int32_t *v;
     dem_vec3 y[3], d;
     int k, n, where;
     dem_real l;
-    if (!(wall->weight[e] > 0)) return count;
+    if (!(wall->weight[e] > 0)) return;
     n = demi_facet_seen(wall, e, x, part, y);
     v = wall->corners + n*e;
     d = demi_facet_point(y, n, &where);
     l = demi_length(d);
-    if (!(l < within)) return count;
+    if (!(l < within)) return;
     if (!ring->facets || l < ring->distance) {
-        ring->number = where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
+        ring->number = where == 0 ? faces + e : where < 4 ? edges + wall->edges[3*e + where - 1]
             : corners + v[where - 4];
         ring->distance = l;
         ring->point = d;
     }
     for (k = 0; k < n; k++) {
-        const int b = (k + 1)%n, before = count;
+        const int b = (k + 1)%n;
         int32_t ends[2];
+        demi_link *corner = demi_link_add(ring, within, corners + v[k], y + k, 0, 0);
         ends[0] = corners + v[k];
         ends[1] = corners + v[b];
-        count = demi_link_add(link, count, ring->facets, within, corners + v[k], y + k, 0, 0);
-        if (count > before && n == 3) {
-            link[before].sides[0] = edges + wall->edges[3*e + k];
-            link[before].sides[1] = edges + wall->edges[3*e + (k + 2)%3];
+        if (n < 3) continue;
+        if (corner) {
+            corner->sides[0] = edges + wall->edges[3*e + k];
+            corner->sides[1] = edges + wall->edges[3*e + (k + 2)%3];
         }
-        if (n == 3)
-            count = demi_link_add(link, count, ring->facets, within, edges + wall->edges[3*e + k],
-                                  y + k, y + b, ends);
+        demi_link_add(ring, within, edges + wall->edges[3*e + k], y + k, y + b, ends);
     }
     ring->facets++;
-    return count;
+}
+/* Gives a side or corner that several images of the surface share, where one continues the other,
+   the number that it has in the first of them. numbers: those of one image. */
+static void demi_links_share(demi_ring *ring, int numbers, dem_real near_by) {
+    demi_link *link = ring->link;
+    int i, k, s;
+    for (i = 0; i < ring->links; i++) {
+        const int32_t was = link[i].number, image = link[i].place/numbers;
+        for (k = 0; k < i && link[k].place/numbers < image; k++) {
+            const dem_vec3 d = demi_sub(link[k].middle, link[i].middle);
+            if (link[k].corner == link[i].corner && demi_dot(d, d) <= near_by*near_by) break;
+        }
+        if (k == i || link[k].place/numbers == image) continue;
+        link[i].number = link[k].number;
+        for (k = DEMI_MAX(i - 5, 0); k < ring->links && k < i + 6; k++)    /* a facet has six */
+            for (s = 0; s < 2 && link[k].facet == link[i].facet; s++)
+                if (link[k].sides[s] == was) link[k].sides[s] = link[i].number;
+    }
 }
 /* Returns the weight of a corner in chi, from the facets at it (links first .. end - 1): 1 + facets
    - sides for meshes, 1 - facets for profiles. */
@@ -222,23 +242,20 @@ static int demi_links_corner(const demi_link *link, int first, int end) {
 }
 /* Corrects the contact points of one body and wall for open rings. power: exponent of
    U(overlap). */
-static void demi_places_rings(const demi_wall *wall, const int32_t *element, int candidates,
-                              dem_vec3 x, const demi_part *part, dem_real within, dem_real power,
-                              demi_link *link, demi_places *p) {
-    demi_ring ring;
+static void demi_places_rings(const demi_ring *ring, dem_real within, dem_real power,
+                              demi_places *p) {
+    demi_link *link = ring->link;
+    const int count = ring->links;
     dem_real lost = 0, t, h, slope;
-    int i, k, end, count = 0;
-    memset(&ring, 0, sizeof ring);
-    for (i = 0; i < candidates; i++)
-        count = demi_links_add(wall, element[i], x, part, within, link, count, &ring);
-    if (ring.facets < 2) return;
+    int i, k, end;
+    if (ring->facets < 2) return;
     qsort(link, (size_t)count, sizeof *link, demi_link_compare);
     for (i = 1; i < count; i++)                 /* one distance per side, despite rounding */
         if (link[i].number == link[i - 1].number) link[i].distance = link[i - 1].distance;
     qsort(link, (size_t)count, sizeof *link, demi_link_nearer);
-    for (i = 0; i < ring.facets; i++) link[i].root = i;
+    for (i = 0; i < ring->facets; i++) link[i].root = i;
     for (i = 0; i < count; i = end) {
-        const dem_real q = (within - link[i].distance)/(within - ring.distance);
+        const dem_real q = (within - link[i].distance)/(within - ring->distance);
         int joined = 0;
         for (end = i + 1; end < count && link[end].number == link[i].number; end++) {
             const int a = demi_link_root(link, link[i].facet);
@@ -254,12 +271,14 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
     if (!(lost > DEM_R(0.25))) return;
     t = DEMI_MIN(2*lost - DEM_R(0.5), DEM_R(1));
     h = t*t*(3 - 2*t);
+    p->offset = 0;                              /* links have theirs in their numbers */
     slope = t < 1 ? 12*t*(1 - t) : 0;           /* dh/dq */
     for (i = 0; i < count; i++)
         if (link[i].more < 0 || link[i].more > 0)
             demi_places_add(p, link[i].place, link[i].more*(h + lost*slope), link[i].point,
                        link[i].distance*link[i].distance);
-    demi_places_add(p, ring.number, -lost*lost*slope, ring.point, ring.distance*ring.distance);
+    demi_places_add(p, ring->number, -lost*lost*slope, ring->point,
+                    ring->distance*ring->distance);
 }
 
 /* --- sieves: a sphere against a whole sieve, in the sieve's frame: z across the sheet, the middle
