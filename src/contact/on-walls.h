@@ -115,26 +115,23 @@ static void demi_view_rings(const demi_view *start, const demi_part *part, dem_r
                             dem_real near_by, int from, demi_places *p) {
     const int numbers = start->wall->number_count, all = start->wall->wraps, offset = p->offset;
     demi_view v = *start;
+    demi_touching *t;
     demi_ring ring;
     int q;
     for (q = from; q < p->count && !(p->at[q].share < DEM_R(-1e-3)); q++) continue;
     if (q == p->count) return;                  /* no negative weight */
     memset(&ring, 0, sizeof ring);
     ring.link = v.w->touching_links + v.w->domains[v.d].touching_first;
-    for (ring.offset = all ? 0 : offset; !all || demi_view_next(&v); ring.offset += numbers) {
+    for (ring.offset = all ? 0 : offset; all ? demi_view_next(&v) : ring.offset == offset;
+         ring.offset += numbers)
         for (q = 0; q < v.count; q++)
             demi_links_add(v.wall, v.element[q], v.x, part, within, &ring);
-        if (!all) break;
-    }
     if (all) demi_links_share(&ring, numbers, near_by);
     demi_places_rings(&ring, within, demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2), p);
     p->offset = offset;
     for (v = *start, ring.offset = 0; all && demi_view_next(&v); ring.offset += numbers)
-        for (q = from; q < p->count; q++)
-            if (p->at[q].element/numbers == ring.offset/numbers) {
-                p->at[q].shift = v.shift;
-                p->at[q].base = v.base;
-            }
+        for (t = p->at; t < p->at + p->count; t++)
+            if (t->element/numbers == ring.offset/numbers) { t->shift = v.shift; t->base = v.base; }
 }
 /* Finds the contact points of a sphere of radius r, or of an ellipsoid (`part` not null), with a
    surface of facets, in world axes. Overlaps are r minus the distance, or 1 - W0. Points within

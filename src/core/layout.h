@@ -134,7 +134,7 @@ typedef struct demi_link {
     int32_t place;                 /* the side's nearest point: its own number, or a corner's */
     int32_t root;                  /* of facet i, in link i: union-find of connected facets */
     dem_real more;                 /* correction of the contact point's weight for rings */
-    dem_vec3 point, middle;        /* nearest point and middle of the side, from the body's centre */
+    dem_vec3 point, middle;        /* nearest; middle of the side; from the body's centre */
 } demi_link;
 
 /* A piece of a union: index of its shape; its centre, m, and its orientation in the union's
