@@ -4536,7 +4536,7 @@ typedef struct demi_link {
     int32_t place;                 /* the side's nearest point: its own number, or a corner's */
     int32_t root;                  /* of facet i, in link i: union-find of connected facets */
     dem_real more;                 /* correction of the contact point's weight for rings */
-    dem_vec3 point;                /* nearest point, from the body's centre */
+    dem_vec3 point, middle;        /* nearest; middle of the side; from the body's centre */
 } demi_link;
 
 /* A piece of a union: index of its shape; its centre, m, and its orientation in the union's
@@ -6141,32 +6141,6 @@ static dem_result demi_rows_check(dem_world *w, const char *call, const demi_fie
                        r->how & DEMI_OVER ? ">" : ">=", least, words, most,
                        r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
                        r->refusal ? r->refusal : remedy);
-}
-/* Copy, or set to 0, the fields that have any of the bits `uses` in `how`. */
-static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {
-    for (; r->name; r++)
-        if (r->how & uses) memcpy((char *)to + r->offset, (const char *)from + r->offset, r->size);
-}
-static void demi_rows_clear(const demi_field_row *r, void *item, int uses) {
-    for (; r->name; r++) if (r->how & uses) memset((char *)item + r->offset, 0, r->size);
-}
-/* Adds the fields of one slab to those of the whole world: sums, maxima and bits. */
-static void demi_rows_add(const demi_field_row *r, void *sum, const void *part) {
-    size_t k;
-    for (; r->name; r++) {
-        void *to = (char *)sum + r->offset;
-        const void *from = (const char *)part + r->offset;
-        const size_t n = r->how & DEMI_SUM ? r->size/demi_row_item(r) : 0;
-        for (k = 0; k < n; k++) switch (r->type) {
-            case 'i': ((int32_t *)to)[k] += ((const int32_t *)from)[k]; break;
-            case 'u': ((uint64_t *)to)[k] += ((const uint64_t *)from)[k]; break;
-            case 'd': ((double *)to)[k] += ((const double *)from)[k]; break;
-            default: ((dem_real *)to)[k] += ((const dem_real *)from)[k];
-            }
-        if (r->how & DEMI_LARGEST) *(double *)to = DEMI_MAX(*(double *)to, *(const double *)from);
-        for (k = 0; k < r->size && r->how & DEMI_EITHER; k++)
-            ((char *)to)[k] |= ((const char *)from)[k];
-    }
 }
 
 /* --- numbers of a world that a run changes. Reading a checkpoint checks them against these
@@ -17631,8 +17605,9 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
            E = X + D h(D/U1),    h(q) = (3 - 2 t) t^2, t = 2 q - 1/2 within 0 .. 1
    A dimple that is reached down to its tip is an almost closed ring: D is small, and E is X, which
    is smooth. An open ring counts as one piece; which of its sides are nearest may change at any
-   moment, as on the medial line of a single wall. Energy is conserved in both cases. Rings across a
-   periodic face are not detected. --- */
+   moment, as on the medial line of a single wall. Energy is conserved in both cases. Where a
+   surface continues in its periodic images, or in the next cell of a tessellation, a ring may
+   extend over several of these: what they share has one number. --- */
 /* Orders links: sides before corners, then by number and facet. */
 static int demi_link_compare(const void *x, const void *y) {
     const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
@@ -17651,68 +17626,87 @@ static int demi_link_root(demi_link *link, int i) {
     while (link[i].root != i) i = link[i].root = link[link[i].root].root;
     return i;
 }
-/* The facets within reach, and the nearest contact point. */
+/* The facets within reach, the links of their sides and corners, and the nearest contact point. */
 typedef struct demi_ring {
-    int facets;
-    int32_t number;
+    demi_link *link;
+    int facets, links;
+    int32_t number, offset;        /* offset: added to numbers, as in demi_places */
     dem_real distance;
     dem_vec3 point;
 } demi_ring;
-/* Adds a side (b: its other end) or corner (b null) of a facet, if it is within reach: its numbers
-   and nearest point. The result is the same, to the bit, from every facet at the side: it is
-   computed from the end with the lower number. Returns the new number of links. */
-static int demi_link_add(demi_link *link, int count, int facet, dem_real within, int32_t number,
-                         const dem_vec3 *a, const dem_vec3 *b, const int32_t *ends) {
-    demi_link *to = &link[count];
+/* Adds a side (b: its other end) or corner (b null) of the last facet, if it is within reach: its
+   numbers and nearest point. The result is the same, to the bit, from every facet at the side: it
+   is computed from the end with the lower number. Returns the link, null if it is out of reach. */
+static demi_link *demi_link_add(demi_ring *ring, dem_real within, int32_t number, const dem_vec3 *a,
+                                const dem_vec3 *b, const int32_t *ends) {
+    demi_link *to = ring->link + ring->links;
     const int turn = b && ends[0] > ends[1];
     int where = 4;
     to->point = b ? demi_side_point(turn ? *b : *a, turn ? *a : *b, 0, 1, &where) : *a;
     to->distance = demi_length(to->point);
-    if (!(to->distance < within)) return count;
+    if (!(to->distance < within)) return 0;
+    to->middle = b ? demi_scale(demi_add(*a, *b), DEM_R(0.5)) : *a;
     to->corner = !b;
-    to->facet = facet;
+    to->facet = ring->facets;
     to->number = number;
     to->place = !b || where < 4 ? number : ends[turn ? 5 - where : where - 4];
     to->sides[0] = to->sides[1] = -1;
-    return count + 1;
+    ring->links++;
+    return to;
 }
-/* Adds the sides and corners of element e, if it is within reach. Returns the new number of
-   links. */
-static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
-                          dem_real within, demi_link *link, int count, demi_ring *ring) {
-    const int edges = wall->element_count, corners = edges + wall->edge_count;
+/* Adds element e with its sides and corners, if it is within reach. */
+static void demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                           dem_real within, demi_ring *ring) {
+    const int faces = ring->offset, edges = faces + wall->element_count;
+    const int corners = edges + wall->edge_count;
     const int32_t *v;
     dem_vec3 y[3], d;
     int k, n, where;
     dem_real l;
-    if (!(wall->weight[e] > 0)) return count;
+    if (!(wall->weight[e] > 0)) return;
     n = demi_facet_seen(wall, e, x, part, y);
     v = wall->corners + n*e;
     d = demi_facet_point(y, n, &where);
     l = demi_length(d);
-    if (!(l < within)) return count;
+    if (!(l < within)) return;
     if (!ring->facets || l < ring->distance) {
-        ring->number = where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
+        ring->number = where == 0 ? faces + e : where < 4 ? edges + wall->edges[3*e + where - 1]
             : corners + v[where - 4];
         ring->distance = l;
         ring->point = d;
     }
     for (k = 0; k < n; k++) {
-        const int b = (k + 1)%n, before = count;
+        const int b = (k + 1)%n;
         int32_t ends[2];
+        demi_link *corner = demi_link_add(ring, within, corners + v[k], y + k, 0, 0);
         ends[0] = corners + v[k];
         ends[1] = corners + v[b];
-        count = demi_link_add(link, count, ring->facets, within, corners + v[k], y + k, 0, 0);
-        if (count > before && n == 3) {
-            link[before].sides[0] = edges + wall->edges[3*e + k];
-            link[before].sides[1] = edges + wall->edges[3*e + (k + 2)%3];
+        if (n < 3) continue;
+        if (corner) {
+            corner->sides[0] = edges + wall->edges[3*e + k];
+            corner->sides[1] = edges + wall->edges[3*e + (k + 2)%3];
         }
-        if (n == 3)
-            count = demi_link_add(link, count, ring->facets, within, edges + wall->edges[3*e + k],
-                                  y + k, y + b, ends);
+        demi_link_add(ring, within, edges + wall->edges[3*e + k], y + k, y + b, ends);
     }
     ring->facets++;
-    return count;
+}
+/* Gives a side or corner that several images of the surface share, where one continues the other,
+   the number that it has in the first of them. numbers: those of one image. */
+static void demi_links_share(demi_ring *ring, int numbers, dem_real near_by) {
+    demi_link *link = ring->link;
+    int i, k, s;
+    for (i = 0; i < ring->links; i++) {
+        const int32_t was = link[i].number, image = link[i].place/numbers;
+        for (k = 0; k < i && link[k].place/numbers < image; k++) {
+            const dem_vec3 d = demi_sub(link[k].middle, link[i].middle);
+            if (link[k].corner == link[i].corner && demi_dot(d, d) <= near_by*near_by) break;
+        }
+        if (k == i || link[k].place/numbers == image) continue;
+        link[i].number = link[k].number;
+        for (k = DEMI_MAX(i - 5, 0); k < ring->links && k < i + 6; k++)    /* a facet has six */
+            for (s = 0; s < 2 && link[k].facet == link[i].facet; s++)
+                if (link[k].sides[s] == was) link[k].sides[s] = link[i].number;
+    }
 }
 /* Returns the weight of a corner in chi, from the facets at it (links first .. end - 1): 1 + facets
    - sides for meshes, 1 - facets for profiles. */
@@ -17730,23 +17724,20 @@ static int demi_links_corner(const demi_link *link, int first, int end) {
 }
 /* Corrects the contact points of one body and wall for open rings. power: exponent of
    U(overlap). */
-static void demi_places_rings(const demi_wall *wall, const int32_t *element, int candidates,
-                              dem_vec3 x, const demi_part *part, dem_real within, dem_real power,
-                              demi_link *link, demi_places *p) {
-    demi_ring ring;
+static void demi_places_rings(const demi_ring *ring, dem_real within, dem_real power,
+                              demi_places *p) {
+    demi_link *link = ring->link;
+    const int count = ring->links;
     dem_real lost = 0, t, h, slope;
-    int i, k, end, count = 0;
-    memset(&ring, 0, sizeof ring);
-    for (i = 0; i < candidates; i++)
-        count = demi_links_add(wall, element[i], x, part, within, link, count, &ring);
-    if (ring.facets < 2) return;
+    int i, k, end;
+    if (ring->facets < 2) return;
     qsort(link, (size_t)count, sizeof *link, demi_link_compare);
     for (i = 1; i < count; i++)                 /* one distance per side, despite rounding */
         if (link[i].number == link[i - 1].number) link[i].distance = link[i - 1].distance;
     qsort(link, (size_t)count, sizeof *link, demi_link_nearer);
-    for (i = 0; i < ring.facets; i++) link[i].root = i;
+    for (i = 0; i < ring->facets; i++) link[i].root = i;
     for (i = 0; i < count; i = end) {
-        const dem_real q = (within - link[i].distance)/(within - ring.distance);
+        const dem_real q = (within - link[i].distance)/(within - ring->distance);
         int joined = 0;
         for (end = i + 1; end < count && link[end].number == link[i].number; end++) {
             const int a = demi_link_root(link, link[i].facet);
@@ -17762,12 +17753,14 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
     if (!(lost > DEM_R(0.25))) return;
     t = DEMI_MIN(2*lost - DEM_R(0.5), DEM_R(1));
     h = t*t*(3 - 2*t);
+    p->offset = 0;                              /* links have theirs in their numbers */
     slope = t < 1 ? 12*t*(1 - t) : 0;           /* dh/dq */
     for (i = 0; i < count; i++)
         if (link[i].more < 0 || link[i].more > 0)
             demi_places_add(p, link[i].place, link[i].more*(h + lost*slope), link[i].point,
                        link[i].distance*link[i].distance);
-    demi_places_add(p, ring.number, -lost*lost*slope, ring.point, ring.distance*ring.distance);
+    demi_places_add(p, ring->number, -lost*lost*slope, ring->point,
+                    ring->distance*ring->distance);
 }
 
 /* --- sieves: a sphere against a whole sieve, in the sieve's frame: z across the sheet, the middle
@@ -20369,6 +20362,30 @@ DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
     return !(v->gap[k] > v->gone) &&
            !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
+/* Corrects the contact points from `from` on for open rings (>>touch): those of the image at which
+   the view is or, where the surface continues in others, of all images; `start` is before these. */
+static void demi_view_rings(const demi_view *start, const demi_part *part, dem_real within,
+                            dem_real near_by, int from, demi_places *p) {
+    const int numbers = start->wall->number_count, all = start->wall->wraps, offset = p->offset;
+    demi_view v = *start;
+    demi_touching *t;
+    demi_ring ring;
+    int q;
+    for (q = from; q < p->count && !(p->at[q].share < DEM_R(-1e-3)); q++) continue;
+    if (q == p->count) return;                  /* no negative weight */
+    memset(&ring, 0, sizeof ring);
+    ring.link = v.w->touching_links + v.w->domains[v.d].touching_first;
+    for (ring.offset = all ? 0 : offset; all ? demi_view_next(&v) : ring.offset == offset;
+         ring.offset += numbers)
+        for (q = 0; q < v.count; q++)
+            demi_links_add(v.wall, v.element[q], v.x, part, within, &ring);
+    if (all) demi_links_share(&ring, numbers, near_by);
+    demi_places_rings(&ring, within, demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2), p);
+    p->offset = offset;
+    for (v = *start, ring.offset = 0; all && demi_view_next(&v); ring.offset += numbers)
+        for (t = p->at; t < p->at + p->count; t++)
+            if (t->element/numbers == ring.offset/numbers) { t->shift = v.shift; t->base = v.base; }
+}
 /* Finds the contact points of a sphere of radius r, or of an ellipsoid (`part` not null), with a
    surface of facets, in world axes. Overlaps are r minus the distance, or 1 - W0. Points within
    `range` (m) are included, with negative overlaps. Returns their number. */
@@ -20379,6 +20396,7 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
     const dem_real *R = wall->pose.rotation;
     const dem_real touch = part ? DEM_R(1) : r;
     const dem_real within = touch + (part ? range/demi_part_thin(part) : range);
+    const dem_real near_by = within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9));
     demi_places p = demi_places_begin(start, out);
     const int numbers = wall->number_count;
     int k, q, from, one, reached;
@@ -20399,15 +20417,11 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
         for (q = 0; q < v.count && part; q++)
             if (!(v.gap[q] > v.gone))
                 demi_facet_places(wall, v.element[q], v.x, part, within, &p);
-        for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
-        if (q < p.count)                        /* a negative weight: is it an open ring? */
-            demi_places_rings(wall, v.element, v.count, v.x, part, within,
-                              demi_normal_is(v.w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
-                              v.w->touching_links + v.w->domains[v.d].touching_first, &p);
+        if (!wall->wraps) demi_view_rings(&v, part, within, near_by, from, &p);
         for (q = from; q < p.count; q++) { p.at[q].shift = v.shift; p.at[q].base = v.base; }
     }
-    if (p.count > 1 || (p.count && p.at->share < 1))
-        demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
+    if (wall->wraps) demi_view_rings(start, part, within, near_by, 0, &p);
+    if (p.count > 1 || (p.count && p.at->share < 1)) demi_places_merge(&p, near_by);
     for (k = 0; k < p.count; k++) {
         demi_touching *t = p.at + k;
         dem_vec3 to = t->point, n = t->point;
@@ -43183,6 +43197,32 @@ DEM_API void dem_world_report(const dem_world *w, FILE *out) {
 
    This part owns messages: it packs grains with their contact history and unpacks them.
    --------------------------------------------------------------------------------------------- */
+/* Copy, or set to 0, the fields that have any of the bits `uses` in `how`. */
+static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {
+    for (; r->name; r++)
+        if (r->how & uses) memcpy((char *)to + r->offset, (const char *)from + r->offset, r->size);
+}
+static void demi_rows_clear(const demi_field_row *r, void *item, int uses) {
+    for (; r->name; r++) if (r->how & uses) memset((char *)item + r->offset, 0, r->size);
+}
+/* Adds the fields of one slab to those of the whole world: sums, maxima and bits. */
+static void demi_rows_add(const demi_field_row *r, void *sum, const void *part) {
+    size_t k;
+    for (; r->name; r++) {
+        void *to = (char *)sum + r->offset;
+        const void *from = (const char *)part + r->offset;
+        const size_t n = r->how & DEMI_SUM ? r->size/demi_row_item(r) : 0;
+        for (k = 0; k < n; k++) switch (r->type) {
+            case 'i': ((int32_t *)to)[k] += ((const int32_t *)from)[k]; break;
+            case 'u': ((uint64_t *)to)[k] += ((const uint64_t *)from)[k]; break;
+            case 'd': ((double *)to)[k] += ((const double *)from)[k]; break;
+            default: ((dem_real *)to)[k] += ((const dem_real *)from)[k];
+            }
+        if (r->how & DEMI_LARGEST) *(double *)to = DEMI_MAX(*(double *)to, *(const double *)from);
+        for (k = 0; k < r->size && r->how & DEMI_EITHER; k++)
+            ((char *)to)[k] |= ((const char *)from)[k];
+    }
+}
 /* Limits: number of slabs; bins per slab of the histogram from which borders are computed.
    Directions of an exchange. Values of bodies.ghost by slot: 0, or DEMI_GHOST; while messages are
    packed also one of the marks that follow. DEMI_ALL: the mark of all own grains, 0. */

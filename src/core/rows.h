@@ -131,32 +131,6 @@ static dem_result demi_rows_check(dem_world *w, const char *call, const demi_fie
                        r->how & DEMI_OVER && r->other <= 0 ? " (required)" : "",
                        r->refusal ? r->refusal : remedy);
 }
-/* Copy, or set to 0, the fields that have any of the bits `uses` in `how`. */
-static void demi_rows_copy(const demi_field_row *r, void *to, const void *from, int uses) {
-    for (; r->name; r++)
-        if (r->how & uses) memcpy((char *)to + r->offset, (const char *)from + r->offset, r->size);
-}
-static void demi_rows_clear(const demi_field_row *r, void *item, int uses) {
-    for (; r->name; r++) if (r->how & uses) memset((char *)item + r->offset, 0, r->size);
-}
-/* Adds the fields of one slab to those of the whole world: sums, maxima and bits. */
-static void demi_rows_add(const demi_field_row *r, void *sum, const void *part) {
-    size_t k;
-    for (; r->name; r++) {
-        void *to = (char *)sum + r->offset;
-        const void *from = (const char *)part + r->offset;
-        const size_t n = r->how & DEMI_SUM ? r->size/demi_row_item(r) : 0;
-        for (k = 0; k < n; k++) switch (r->type) {
-            case 'i': ((int32_t *)to)[k] += ((const int32_t *)from)[k]; break;
-            case 'u': ((uint64_t *)to)[k] += ((const uint64_t *)from)[k]; break;
-            case 'd': ((double *)to)[k] += ((const double *)from)[k]; break;
-            default: ((dem_real *)to)[k] += ((const dem_real *)from)[k];
-            }
-        if (r->how & DEMI_LARGEST) *(double *)to = DEMI_MAX(*(double *)to, *(const double *)from);
-        for (k = 0; k < r->size && r->how & DEMI_EITHER; k++)
-            ((char *)to)[k] |= ((const char *)from)[k];
-    }
-}
 
 /* --- numbers of a world that a run changes. Reading a checkpoint checks them against these
        limits. --- */
