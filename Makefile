@@ -61,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help help-all all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 # a target with `## TEXT` is in both lists, one with `### TEXT` in the long one; the short list ends TEXT at `;` or `:`
