@@ -11,7 +11,8 @@
    integral of F (J), is lost. desc.law_range must be at least capillary_rupture.
 
    Range: V below about 0.01 R^3, t below 0.7, grains below the capillary length (2.7e-3 m for water). Limits: no viscous
-   force of the liquid, no flow of liquid between grains, no bridges that merge.
+   force of the liquid, no flow of liquid between grains, no bridges that merge. The ledger closes for spheres only
+   (dem_contact.kn).
 
    In contact: Hertz's law and Mindlin's spring, rescaled [THO13]. Coulomb's limit is mu times the elastic force of Hertz's
    law, which the bridge increases. History: 5 reals, 1 vector: spring and its stiffness; 1 while there is a bridge. */

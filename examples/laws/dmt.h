@@ -7,7 +7,8 @@
    d: overlap, m; kn: as in Hertz's law, N/m^(3/2); w: work of adhesion, J/m2, twice the surface energy of two equal materials;
    R*: m. The pull-off force is 2 pi w R*, at d = 0. Range: Tabor's number (R* w^2/(E*^2 z^3))^(1/3) below 0.1, with z about
    0.3e-9 m; above 5 use JKR (jkr.h). Limits: adhesion itself loses no energy here; only Hertz's dashpot does, so elastic
-   grains never stick. The force begins with its full attraction: the energy balance closes with t_c/200 and below.
+   grains never stick. The force begins with its full attraction: the energy balance closes with t_c/200 and below,
+   for spheres only (dem_contact.kn).
 
    Friction is Mindlin's spring, rescaled [THO13]; Coulomb's limit is mu (F + 2 pi w R*). History: 4 reals, 1 vector. */
 #ifndef DMT_H

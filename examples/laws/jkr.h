@@ -16,7 +16,8 @@
        e^2 = 1 - (v_s/v)^2,   v_s^2 = 14.18 (w^5 R*^4/E*^2)^(1/3)/m*
 
    Range: Tabor's number (R* w^2/(E*^2 z^3))^(1/3) above 5, with z about 0.3e-9 m; below 0.1 use DMT (dmt.h). Softened grains
-   stick more: keep w^5/E^2. The dashpot is Hertz's for the circle a.
+   stick more: keep w^5/E^2. The dashpot is Hertz's for the circle a. For spheres: with other shapes E* changes with the
+   overlap as kn does (dem_contact.kn), and this energy and the ledger are wrong.
 
    Friction is Mindlin's spring, rescaled [THO13], with 8 G* a; Coulomb's limit is mu (F + 3 pi w R*) (Thornton, J. Phys. D 24
    (1991) 1942). law_stiffness: 0 (Hertz's). History: 6 reals, 1 vector: spring and its stiffness; 1 while in contact; stored

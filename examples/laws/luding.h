@@ -15,7 +15,8 @@
        e^2 = k1/k2 - kc (k2 - k1)^2/(k1 k2 (k2 + kc));   negative: e = 0, they stick
 
    Range: kc up to about k1. With a constant k2 dem.h has this law as DEM_NORMAL_HYSTERETIC. Limits: as there, a grain at rest
-   on the unloading line oscillates without end unless `damping` (N s/m) is set. law_stiffness: k2p.
+   on the unloading line oscillates without end unless `damping` (N s/m) is set. The ledger closes for spheres only
+   (dem_contact.kn). law_stiffness: k2p.
 
    Friction is a spring with kt = 2/7 k1; Coulomb's limit is mu (F + kc d), which is 0 at the limit of tension.
    History: 6 reals, 1 vector: spring, D, and overlap and force of the last step, for the energy account. */

@@ -13,8 +13,8 @@
 
    With `stiffer` = 1 and S > 0, e falls from 1 at speed 0; with S = 0 it is the same at any speed. No dashpot is needed.
    Range: e from 0.1 to 1. Limits: a grain at rest on the unloading line oscillates, because nothing is lost there: set
-   `damping` (N s/m) where grains must come to rest. The dent is forgotten when the contact ends. law_stiffness: the largest k2
-   that occurs, for the time step.
+   `damping` (N s/m) where grains must come to rest. The dent is forgotten when the contact ends. The ledger closes for spheres
+   only (dem_contact.kn). law_stiffness: the largest k2 that occurs, for the time step.
 
    Friction is a spring with kt = 2/7 k1 [CS79]. History: 6 reals, 1 vector: spring, D, and overlap and force of the last
    step, for the energy account. */
