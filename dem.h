@@ -1080,6 +1080,10 @@ typedef struct dem_contact {
        force at the contact point accelerates, rotation included */
     dem_real m_eff;
     dem_real dt;             /* s, the time step. 0: leave the contact history unchanged */
+    /* At ellipsoids, polyhedra and polygons kn, cn, kun and kad are multiplied by s, the derivative
+       of the overlap with respect to the approach, and the ledger divides `elastic` and `sag` by s.
+       The ledger closes if the normal force is proportional to these; with other forces, for
+       example a constant attraction, only while s is constant: not at corners and edges. */
     dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
     dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
     dem_real kun;            /* N/m, unloading of the hysteretic law; otherwise 0 */

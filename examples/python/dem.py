@@ -1810,11 +1810,15 @@ class Contact(Struct):
          'kg, 1/(1/ma + 1/mb), at a wall ma; with bodies other than spheres the mass that a normal force at '
          'the contact point accelerates, rotation included'),
         ('dt', Real, 's, the time step. 0: leave the contact history unchanged'),
-        ('kn', Real, 'built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others)'),
+        ('kn', Real,
+         'At ellipsoids, polyhedra and polygons kn, cn, kun and kad are multiplied by s, the derivative of the'
+         ' overlap with respect to the approach, and the ledger divides `elastic` and `sag` by s. The ledger '
+         'closes if the normal force is proportional to these; with other forces, for example a constant '
+         'attraction, only while s is constant: not at corners and edges.'),
         ('cn', Real, ""),
-        ('kt', Real, ""),
+        ('kt', Real, 'built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others)'),
         ('ct', Real, ""),
-        ('kun', Real, 'N/m, unloading of the hysteretic law; otherwise 0'),
+        ('kun', Real, ""),
         ('friction', Real, 'of the pair of materials'),
         ('friction_static', Real, ""),
         ('rolling_friction', Real, ""),
