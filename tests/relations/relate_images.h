@@ -154,8 +154,10 @@ static void rel_leave_framed(rel_scene *s) {
         if (i < s->count && s->op[i].call == REL_OUTLET && rel_find(&s->op[i], "d.frame")) rel_drop_ops(s, i, i + 1);
 }
 /* Leaves out what has axes or a direction of its own, or draws random places: feeds, the shear of a cell, user-defined
-   motions. */
-static int rel_leave_axes(rel_case *c) {
+   motions. convex: the image has the contact points of polyhedra in another order. By impulses their loads are "one of
+   many solutions" (docs/impulses.md) if there are more than three, and friction by Coulomb's law depends on each; the
+   convex law is a quadratic programme, whose velocities are unique. */
+static int rel_leave_axes(rel_case *c, int convex) {
     static const int feeds[] = {REL_FEED, REL_FEED_SIZES, REL_FILL, REL_FILL_SHAPE, -1};
     static const char *const shear[] = {"shear", 0};
     /* what is beyond a distance from the z axis of a frame; a cylinder along an axis */
@@ -168,6 +170,8 @@ static int rel_leave_axes(rel_case *c) {
     rel_leave_framed(&rel_own);
     for (i = rel_own.count - 1; i > 0; i--)
         if (rel_own.op[i].call == REL_MOTION && rel_find(&rel_own.op[i], "function")) rel_drop_ops(&rel_own, i, i + 1);
+    for (i = 0; i < rel_own.count && convex && rel_has(c, "impulses"); i++)
+        if (rel_own.op[i].call == REL_POLYHEDRON) rel_put(&rel_own.op[0], "cone", DEM_CONE_CONVEX);
     return rel_instead(c) && !rel_code_flag(c, 1);
 }
 static int rel_image_near(rel_case *c, const rel_map *map, const char *what) {
@@ -179,7 +183,7 @@ static int rel_rotated(rel_case *c) {
     rel_map m = rel_same;
     const int axis = rel_has(c, "planar") || rel_has(c, "profile") ? 2 : rel_below(&c->rng, 3), x = (axis + 1)%3,
         y = (axis + 2)%3;
-    if (!c->ran || !rel_leave_axes(c)) return REL_SKIPPED;
+    if (!c->ran || !rel_leave_axes(c, 0)) return REL_SKIPPED;
     m.m[x][x] = m.m[y][y] = 0;
     m.m[x][y] = -1;
     m.m[y][x] = 1;
@@ -188,7 +192,7 @@ static int rel_rotated(rel_case *c) {
 static int rel_mirrored(rel_case *c) {
     rel_map m = rel_same;
     const int axis = rel_below(&c->rng, rel_has(c, "planar") ? 2 : 3);
-    if (!c->ran || !rel_leave_axes(c)) return REL_SKIPPED;
+    if (!c->ran || !rel_leave_axes(c, 1)) return REL_SKIPPED;
     m.m[axis][axis] = -1;
     m.det = -1;
     return rel_image_near(c, &m, axis == 0 ? "mirrored in x" : axis == 1 ? "mirrored in y" : "mirrored in z");
