@@ -59,6 +59,7 @@ static inline void scene_move(dem_world *world, dem_body body, dem_vec3 velocity
     s.spin = spin;
     dem_body_set(world, body, &s);
 }
+#ifndef DEM_NO_REPORTS
 /* The report contains these words. */
 static inline void scene_report_has(const dem_world *world, const char *words) {
     static char text[16000];
@@ -71,6 +72,7 @@ static inline void scene_report_has(const dem_world *world, const char *words) {
     fclose(f);
     CHECK_STR(text, words);
 }
+#endif
 /* A box of these edges, m, its corner i with the bits of i as signs. */
 static inline void scene_box_points(double a, double b, double c, dem_real *p) {
     int i;
@@ -104,7 +106,7 @@ static inline dem_quat scene_turn(uint64_t *state) {
     const dem_vec3 axis = scene_at(state, 2, -1, 2, -1, 2, -1);
     return dem_quat_about(axis, (dem_real)(6*scene_random(state)));
 }
-#ifdef DEM_IMPLEMENTATION
+#if defined(DEM_IMPLEMENTATION) && !defined(DEM_NO_POLYHEDRA)
 /* A polyhedron as contacts see it, of its own size and turned. */
 static inline demi_part scene_part(const dem_world *world, dem_shape shape, dem_quat q) {
     demi_part p;
