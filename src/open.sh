@@ -1,7 +1,8 @@
 # sh src/open.sh DIR: the rooms of dem.h as sources that are compiled separately, for the tests and for whoever edits.
 # DIR/FOLDER.c is the folder src/FOLDER with all its functions visible, after what the folders above it declare;
 # DIR/private.h declares everything. Files that are as they were keep their time, so that make compiles only what an
-# edit changes. SWITCH=-DDEM_NO_SLABS: only the rooms that are left then. OPEN_LINES=1: inline functions also have file and line in src/, which tests/coverage.sh counts by.
+# edit changes. SWITCH=-DDEM_NO_SLABS: only the rooms that are left then. OPEN_LINES=1: inline functions also have file and
+# line in src/, which tests/coverage.sh counts by.
 dir=$1
 mkdir -p "$dir"
 keep() { cmp -s "$dir/new" "$1" || cp "$dir/new" "$1"; }
