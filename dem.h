@@ -5641,6 +5641,20 @@ DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
     return w->effects.clustered
         ? demi_add(way, demi_sub(demi_near_arm(w, at, 1), demi_near_arm(w, at, 0))) : way;
 }
+/* With impulses: 1 if body a is half a step ahead and b is not, having just been set, -1 if only b
+   is, otherwise 0 (demi_move_midpoint). A fixed body is where it is at any time. */
+DEM_INLINE int demi_pair_late(const dem_world *w, int a, int b) {
+    if (!demi_response_is(w, DEMI_MIDWAY) || w->bodies.went[a] == w->bodies.went[b] ||
+        !(w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0)) return 0;
+    return w->bodies.went[a] ? 1 : -1;
+}
+/* The vector `way` between what belongs to the bodies of entry `at`, as of the time of that one
+   which was just set. Otherwise the normal would depend on the frame of reference. */
+DEM_INLINE dem_vec3 demi_near_level(const dem_world *w, size_t at, dem_vec3 way) {
+    const int a = w->near.a[at], b = w->near.b[at], late = demi_pair_late(w, a, b);
+    return late ? demi_add(way, demi_scale(demi_at(w->bodies.vel + 4*(late > 0 ? a : b)),
+                                           (dem_real)late*w->clock.dt/2)) : way;
+}
 /* True if the law may write rates of the user-defined numbers of bodies. */
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;
@@ -22726,7 +22740,8 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
     t->count = t->next = 0;
     for (; p < end && t->count < DEMI_EGGS; p++) {
         const int a = w->near.a[base + p], b = w->near.b[base + p];
-        const dem_vec3 r = demi_near_bodies_way(w, (size_t)(base + p));
+        const size_t at = (size_t)(base + p);
+        const dem_vec3 r = demi_near_level(w, at, demi_near_bodies_way(w, at));
         const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
         const dem_real far = radii + (dem_real)w->margin.reach;
         const demi_shape *one, *other;
@@ -24225,13 +24240,14 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
     demi_eggs_set(w, t, k, &p, &q, c);
     c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
     /* to the same point, exactly: conserves angular momentum */
-    c->arm_b = demi_sub(c->arm_a, demi_near_bodies_way(w, (size_t)at));
+    c->arm_b = demi_sub(c->arm_a,
+                        demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at)));
 }
 /* Finds the contacts of one candidate pair, then merges them and passes grip on. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
                                       int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
-    const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
+    const dem_vec3 r = demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at));
     const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
     const dem_real far = radii + (dem_real)w->margin.reach;
     const demi_kept *now = demi_kept_of(w, d);
@@ -26055,7 +26071,7 @@ static void demi_impulses_meet(dem_world *w, int d) {
         const size_t at = (size_t)d*stride + (size_t)p;
         const int a = w->near.a[at], b = w->near.b[at];
         dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
-        const dem_vec3 way = demi_near_way(w, at);
+        const dem_vec3 way = demi_near_level(w, at, demi_near_way(w, at));
         const dem_real l2 = demi_dot(way, way), radii = demi_radius(w, a) +
             demi_radius(w, b), most = radii + demi_range(w, radii);
         if (l2 > 0 && l2 <= most*most && s->movers[a].inv + s->movers[b].inv > 0 &&
@@ -26163,23 +26179,23 @@ typedef struct demi_spot {
     size_t stride;
 } demi_spot;
 /* Returns what is to be added to the gap of two bodies, m, if one was just set and is not half a
-   step ahead: the gap is that at its time. At walls contacts are those of that time, see `late`. */
+   step ahead: the gap is that at its time. The way between the centres is (demi_near_level), but
+   the other body has turned. At walls contacts are those of that time, see `late`. */
 static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
                                   const demi_spot *o) {
-    const int a = w->bodies.went[m->a], b = k && k->b < 0 ? a : w->bodies.went[m->b];
-    dem_vec3 v;
-    if (a == b) return 0;
-    v = a ? demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a)
-          : demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);
-    return demi_dot(v, o->normal)*(a ? w->solver.dt : -w->solver.dt)/2;
+    const int late = k && k->b < 0 ? 0 : demi_pair_late(w, m->a, m->b);
+    const int body = late > 0 ? m->a : m->b;
+    if (!late) return 0;
+    return demi_dot(demi_cross(demi_at(w->bodies.spin + 4*body), late > 0 ? o->arm_a : o->arm_b),
+                    o->normal)*(dem_real)late*w->solver.dt/2;
 }
 /* Returns the geometry and the history of a constraint of domain d. */
 static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meeting *m) {
     const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
     demi_spot o;
     if (!k) {
-        const size_t stride = (size_t)w->near.stride;
-        const dem_vec3 way = demi_near_way(w, (size_t)d*stride + (size_t)m->home);
+        const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)m->home;
+        const dem_vec3 way = demi_near_level(w, at, demi_near_way(w, at));
         const dem_real ra = demi_radius(w, m->a), rb = demi_radius(w, m->b);
         const dem_real l = demi_length(way);
         o.normal = demi_scale(way, 1/l);

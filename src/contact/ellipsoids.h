@@ -157,7 +157,8 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
     t->count = t->next = 0;
     for (; p < end && t->count < DEMI_EGGS; p++) {
         const int a = w->near.a[base + p], b = w->near.b[base + p];
-        const dem_vec3 r = demi_near_bodies_way(w, (size_t)(base + p));
+        const size_t at = (size_t)(base + p);
+        const dem_vec3 r = demi_near_level(w, at, demi_near_bodies_way(w, at));
         const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
         const dem_real far = radii + (dem_real)w->margin.reach;
         const demi_shape *one, *other;

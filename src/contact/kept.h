@@ -427,13 +427,14 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
     demi_eggs_set(w, t, k, &p, &q, c);
     c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
     /* to the same point, exactly: conserves angular momentum */
-    c->arm_b = demi_sub(c->arm_a, demi_near_bodies_way(w, (size_t)at));
+    c->arm_b = demi_sub(c->arm_a,
+                        demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at)));
 }
 /* Finds the contacts of one candidate pair, then merges them and passes grip on. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
                                       int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
-    const dem_vec3 r = demi_near_bodies_way(w, (size_t)at);
+    const dem_vec3 r = demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at));
     const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
     const dem_real far = radii + (dem_real)w->margin.reach;
     const demi_kept *now = demi_kept_of(w, d);

@@ -617,6 +617,20 @@ DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
     return w->effects.clustered
         ? demi_add(way, demi_sub(demi_near_arm(w, at, 1), demi_near_arm(w, at, 0))) : way;
 }
+/* With impulses: 1 if body a is half a step ahead and b is not, having just been set, -1 if only b
+   is, otherwise 0 (demi_move_midpoint). A fixed body is where it is at any time. */
+DEM_INLINE int demi_pair_late(const dem_world *w, int a, int b) {
+    if (!demi_response_is(w, DEMI_MIDWAY) || w->bodies.went[a] == w->bodies.went[b] ||
+        !(w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0)) return 0;
+    return w->bodies.went[a] ? 1 : -1;
+}
+/* The vector `way` between what belongs to the bodies of entry `at`, as of the time of that one
+   which was just set. Otherwise the normal would depend on the frame of reference. */
+DEM_INLINE dem_vec3 demi_near_level(const dem_world *w, size_t at, dem_vec3 way) {
+    const int a = w->near.a[at], b = w->near.b[at], late = demi_pair_late(w, a, b);
+    return late ? demi_add(way, demi_scale(demi_at(w->bodies.vel + 4*(late > 0 ? a : b)),
+                                           (dem_real)late*w->clock.dt/2)) : way;
+}
 /* True if the law may write rates of the user-defined numbers of bodies. */
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;

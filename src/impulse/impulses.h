@@ -214,7 +214,7 @@ static void demi_impulses_meet(dem_world *w, int d) {
         const size_t at = (size_t)d*stride + (size_t)p;
         const int a = w->near.a[at], b = w->near.b[at];
         dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
-        const dem_vec3 way = demi_near_way(w, at);
+        const dem_vec3 way = demi_near_level(w, at, demi_near_way(w, at));
         const dem_real l2 = demi_dot(way, way), radii = demi_radius(w, a) +
             demi_radius(w, b), most = radii + demi_range(w, radii);
         if (l2 > 0 && l2 <= most*most && s->movers[a].inv + s->movers[b].inv > 0 &&
@@ -322,23 +322,23 @@ typedef struct demi_spot {
     size_t stride;
 } demi_spot;
 /* Returns what is to be added to the gap of two bodies, m, if one was just set and is not half a
-   step ahead: the gap is that at its time. At walls contacts are those of that time, see `late`. */
+   step ahead: the gap is that at its time. The way between the centres is (demi_near_level), but
+   the other body has turned. At walls contacts are those of that time, see `late`. */
 static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
                                   const demi_spot *o) {
-    const int a = w->bodies.went[m->a], b = k && k->b < 0 ? a : w->bodies.went[m->b];
-    dem_vec3 v;
-    if (a == b) return 0;
-    v = a ? demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, o->arm_a)
-          : demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, o->arm_b);
-    return demi_dot(v, o->normal)*(a ? w->solver.dt : -w->solver.dt)/2;
+    const int late = k && k->b < 0 ? 0 : demi_pair_late(w, m->a, m->b);
+    const int body = late > 0 ? m->a : m->b;
+    if (!late) return 0;
+    return demi_dot(demi_cross(demi_at(w->bodies.spin + 4*body), late > 0 ? o->arm_a : o->arm_b),
+                    o->normal)*(dem_real)late*w->solver.dt/2;
 }
 /* Returns the geometry and the history of a constraint of domain d. */
 static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meeting *m) {
     const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
     demi_spot o;
     if (!k) {
-        const size_t stride = (size_t)w->near.stride;
-        const dem_vec3 way = demi_near_way(w, (size_t)d*stride + (size_t)m->home);
+        const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)m->home;
+        const dem_vec3 way = demi_near_level(w, at, demi_near_way(w, at));
         const dem_real ra = demi_radius(w, m->a), rb = demi_radius(w, m->b);
         const dem_real l = demi_length(way);
         o.normal = demi_scale(way, 1/l);
