@@ -227,7 +227,8 @@ typedef struct dem_ledger {
     double throughput;                      /* sum of the magnitudes of what was supplied */
     /* supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or
        walls are added, moved or removed between steps, materials change. What springs held on a
-       grain that an outlet or an outflow boundary removes is in the residual. */
+       grain that an outlet or an outflow boundary removes is in the residual, and so is what they
+       gain when two walls in one place part below a grain: then both act where one did. */
     double growth;
     double residual;
     double unknown;                         /* > 0: the user-defined law created energy */
