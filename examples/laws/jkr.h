@@ -46,6 +46,11 @@ static inline dem_real jkr_root(dem_real d, dem_real R, dem_real B) {
     }
     return c;
 }
+/* Returns the stored energy, J, at c = a^(1/2). */
+static inline dem_real jkr_stored(dem_real E, dem_real R, dem_real B, dem_real c) {
+    const dem_real a = c*c;
+    return E*(a*a*a*a*a*8/(15*R*R) - a*a*a*c*B*4/(3*R) + a*a*B*B/2);
+}
 static inline void jkr_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const jkr *u = (const jkr *)c->user;
     const dem_real R = c->r_eff, root = (dem_real)sqrt((double)R), E = DEM_R(0.75)*c->kn/root;
@@ -58,15 +63,16 @@ static inline void jkr_law(const dem_contact *c, dem_real *memory, dem_contact_f
         a = x*x;
         F = E*(a*a*a*4/(3*R) - 2*B*a*x);
         f->elastic = F;
-        f->energy.elastic = E*(a*a*a*a*a*8/(15*R*R) - a*a*a*x*B*4/(3*R) + a*a*B*B/2);
+        f->energy.elastic = jkr_stored(E, R, B, x);
         f->slope = f->slope_step = 2*E*a;                           /* of the disc that sticks, for rolling laws */
         f->kt = f->kt_step = c->kt*a/root;                          /* 8 G* a */
         f->ct = c->ct*x/(dem_real)sqrt((double)root);
         f->normal = F + c->cn*x/(dem_real)sqrt((double)root)*c->closing_speed;
         dem_law_load(c, f, DEM_R(9.42477796076938)*u->w*R);
     }
-    if (c->dt > 0) {                                                /* begin: energy released; end: energy still stored */
-        if (sticks != (memory[4] > 0)) f->energy.sag = stored - f->energy.elastic;
+    if (sticks && !(memory[4] > 0)) f->energy.sag = -jkr_stored(E, R, B, (dem_real)cbrt((double)(B*R)));  /* at d = 0 */
+    if (!sticks && memory[4] > 0) f->energy.sag = stored;
+    if (c->dt > 0) {
         memory[4] = sticks ? DEM_R(1) : DEM_R(0);
         memory[5] = f->energy.elastic;
     }

@@ -62,7 +62,6 @@ static inline void luding_law(const dem_contact *c, dem_real *memory, dem_contac
     f->energy.elastic = f->elastic*f->elastic/(2*k2);
     f->energy.sag = (f->elastic + own[2])/2*(d - own[1]) - (f->energy.elastic - before);
     if (c->dt > 0) { own[0] = D; own[1] = d; own[2] = f->elastic; }
-    else f->energy.sag = 0;
     dem_law_spring(c, memory, f);
 }
 

@@ -44,7 +44,6 @@ static inline void walton_braun_law(const dem_contact *c, dem_real *memory, dem_
     f->energy.elastic = f->elastic*f->elastic/(2*k2);               /* work that is not stored is lost */
     f->energy.sag = (f->elastic + own[2])/2*(c->overlap - own[1]) - (f->energy.elastic - stored);
     if (c->dt > 0) { own[0] = D; own[1] = c->overlap; own[2] = f->elastic; }
-    else f->energy.sag = 0;
     dem_law_spring(c, memory, f);
 }
 

@@ -460,7 +460,8 @@ typedef struct dem_contact {
     DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)
 } dem_contact;
 
-/* The energies of one contact, J. Losses and work are those of the step. */
+/* The energies of one contact, J. Losses and work are those of the step. If dt is 0, `sag` is what
+   hysteresis will take in the next step: bodies or walls may have been placed with an overlap. */
 typedef struct dem_contact_energy {
     dem_real dashpot, sag;   /* lost to the normal dashpot, and to hysteresis */
     dem_real elastic;        /* stored in the normal spring now */

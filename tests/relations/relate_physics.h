@@ -254,7 +254,7 @@ static double rel_energy_of(const dem_ledger *l) {
 /* "The ledger closes if the normal force is proportional to these" (dem_contact.kn): not the forces of these laws, on
    bodies whose overlap does not grow by the approach. */
 static int rel_books_apart(const rel_case *c) {
-    static const char *const laws[] = {"capillary", "DMT", "JKR", "Luding", "Walton-Braun", 0};
+    static const char *const laws[] = {"capillary", "DMT", "JKR", "Luding", "Walton-Braun", "law across gaps", 0};
     static const char *const shapes[] = {"ellipsoids", "cubes", "rocks", "unions", "unions of ellipsoids",
         "unions of polyhedra", "polygons", "concave polygons", 0};
     return rel_has_any(c, laws) && rel_has_any(c, shapes);
