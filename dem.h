@@ -1099,10 +1099,9 @@ typedef struct dem_contact {
     DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)
 } dem_contact;
 
-/* The energies of one contact, J. Losses and work are those of the step. If dt is 0, `sag` is what
-   hysteresis will take in the next step: bodies or walls may have been placed with an overlap. */
+/* The energies of one contact, J. Losses and work are those of the step. */
 typedef struct dem_contact_energy {
-    dem_real dashpot, sag;   /* lost to the normal dashpot, and to hysteresis */
+    dem_real dashpot, sag;   /* lost to the normal dashpot; to hysteresis (dt 0: next step) */
     dem_real elastic;        /* stored in the normal spring now */
     dem_real shear_work;     /* work done against the tangential force */
     dem_real slide;          /* lost to sliding */
@@ -5650,8 +5649,7 @@ DEM_INLINE int demi_pair_late(const dem_world *w, int a, int b) {
         !(w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0)) return 0;
     return w->bodies.went[a] ? 1 : -1;
 }
-/* The vector `way` between what belongs to the bodies of entry `at`, as of the time of that one
-   which was just set. Otherwise the normal would depend on the frame of reference. */
+/* The vector `way` between the bodies of entry `at` at the time of the one that was just set. */
 DEM_INLINE dem_vec3 demi_near_level(const dem_world *w, size_t at, dem_vec3 way) {
     const int a = w->near.a[at], b = w->near.b[at], late = demi_pair_late(w, a, b);
     return late ? demi_add(way, demi_scale(demi_at(w->bodies.vel + 4*(late > 0 ? a : b)),

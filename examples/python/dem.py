@@ -1842,7 +1842,7 @@ class ContactEnergy(Struct):
     __slots__ = ()
     c_name = 'dem_contact_energy'
     rows = [
-        ('dashpot', Real, 'lost to the normal dashpot, and to hysteresis'),
+        ('dashpot', Real, 'lost to the normal dashpot; to hysteresis (dt 0: next step)'),
         ('sag', Real, ""),
         ('elastic', Real, 'stored in the normal spring now'),
         ('shear_work', Real, 'work done against the tangential force'),
@@ -3066,7 +3066,8 @@ class Ledger(Struct):
         ('growth', ctypes.c_double,
          'supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or walls '
          'are added, moved or removed between steps, materials change. What springs held on a grain that an '
-         'outlet or an outflow boundary removes is in the residual.'),
+         'outlet or an outflow boundary removes is in the residual, and so is what they gain when two walls in'
+         ' one place part below a grain: then both act where one did.'),
         ('residual', ctypes.c_double, ''),
         ('unknown', ctypes.c_double, '> 0: the user-defined law created energy'),
     ]

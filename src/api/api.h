@@ -460,10 +460,9 @@ typedef struct dem_contact {
     DEM_LAW_COEFFICIENTS(DEM_COEFFICIENT_FIELD)
 } dem_contact;
 
-/* The energies of one contact, J. Losses and work are those of the step. If dt is 0, `sag` is what
-   hysteresis will take in the next step: bodies or walls may have been placed with an overlap. */
+/* The energies of one contact, J. Losses and work are those of the step. */
 typedef struct dem_contact_energy {
-    dem_real dashpot, sag;   /* lost to the normal dashpot, and to hysteresis */
+    dem_real dashpot, sag;   /* lost to the normal dashpot; to hysteresis (dt 0: next step) */
     dem_real elastic;        /* stored in the normal spring now */
     dem_real shear_work;     /* work done against the tangential force */
     dem_real slide;          /* lost to sliding */

@@ -62,9 +62,17 @@ static int rel_restart(rel_case *c) {
     how.checkpoint = 1;
     return c->ran ? rel_bits(c, c->s, &how, "continued in a new world") : REL_SKIPPED;
 }
+/* What was written after the checkpoint stays: files of numbered frames that the continued run does not write again,
+   because their output has ended. */
 static int rel_restart_used(rel_case *c) {
+    static const int ends[] = {REL_OUTPUT_END, -1};
     rel_how how = {0};
     how.checkpoint = 2;
+    if (c->ran && rel_has(c, "output ended")) {
+        rel_copy(&rel_own, c->s);
+        rel_leave_calls(&rel_own, ends, 0);
+        if (!rel_instead(c)) return REL_SKIPPED;
+    }
     return c->ran ? rel_bits(c, c->s, &how, "continued in a used world") : REL_SKIPPED;
 }
 static int rel_ledger_same(rel_case *c) {
@@ -223,10 +231,11 @@ static int rel_zero_epsd(const rel_case *c, rel_scene *s, int on) {
 }
 /* Static friction that is not larger than friction. Pairs have the friction of their materials, because a pair of
    its own keeps the mixed friction_static, which must be >= its friction ("start from dem_pair_get and change only
-   what differs", dem_pair_set). */
+   what differs", dem_pair_set), and for the same reason friction stays as it was set first. */
 static int rel_zero_static(const rel_case *c, rel_scene *s, int on) {
     int i;
     (void)c;
+    rel_leave_call(s, REL_RUB);
     rel_leave_field(s, REL_MATERIAL, "friction_static");
     rel_leave_field(s, REL_PAIR, "friction");
     for (i = 0; i < s->count && on; i++) {

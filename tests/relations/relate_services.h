@@ -37,7 +37,8 @@ static int rel_bits(rel_case *c, const rel_scene *s, const rel_how *how, const c
    for the new radii. Then by impulses the first computation has moved spins by rounding, and the search for contacts of
    other shapes than spheres begins with what the first one has found; no comment promises these bits, so such scenes
    are compared without growth. Grains of feeds come between the two computations, too: by impulses scenes are compared
-   without feeds. ---- */
+   without feeds. "An outlet checks whenever the neighbour list is rebuilt" (dem_outlet_desc), also one that was read
+   before a grain came: scenes with feeds are compared without outlets. ---- */
 static int rel_add_reader(rel_scene *s, int reader, int step) {
     rel_op *op = &s->op[s->count++];
     if (s->count >= REL_OPS) return 0;
@@ -51,7 +52,7 @@ static int rel_read_only(rel_case *c) {
     const int marks = c->s->marks ? c->s->marks : REL_MARKS;
     const int steps[3] = {0, 1 + rel_below(&c->rng, c->s->steps), c->s->steps*(1 + rel_below(&c->rng, marks))/marks};
     static const char *const growth[] = {"growth", 0};
-    static const int feeds[] = {REL_FEED, REL_FEED_SIZES, -1};
+    static const int feeds[] = {REL_FEED, REL_FEED_SIZES, -1}, outlets[] = {REL_OUTLET, -1};
     const rel_how how = {0};
     const int solved = rel_has(c, "impulses");
     int k, e, only, result = REL_HOLDS, at, shapes = 0, fed = 0;
@@ -60,9 +61,10 @@ static int rel_read_only(rel_case *c) {
         shapes |= c->s->op[k].call >= REL_ELLIPSOID && c->s->op[k].call <= REL_UNION;
         fed |= rel_among(feeds, c->s->op[k].call);
     }
-    if ((rel_has(c, "growth") && (solved || shapes)) || (fed && solved)) {
+    if ((rel_has(c, "growth") && (solved || shapes)) || (fed && (solved || rel_has(c, "outlet")))) {
         rel_copy(&rel_own, c->s);
         if (solved) rel_leave_calls(&rel_own, feeds, 0);
+        else if (fed) rel_leave_calls(&rel_own, outlets, 0);
         rel_leave_fields(&rel_own, REL_WORLD, growth);
         if (!rel_instead(c)) return REL_SKIPPED;
     }
