@@ -621,6 +621,7 @@ static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t siz
     if (r.t->pairs)
         memcpy(r.t->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     r.t->facets_valid = 1;
+    r.t->sheeted = w->sheeted;
     memset(&r.t->events.desc, 0, sizeof r.t->events.desc);  /* events of a copy are nobody's */
     result = r.t->pairs ? demi_twin_read(&r, &seen) : DEM_ERROR_MEMORY;
     demi_free(r.t, seen);

@@ -56,6 +56,10 @@ static double advise_power(const dem_world *world, void *user) {
     ++*(int *)user;
     return dem_wall_loads_get(world, drum, &loads) == DEM_OK ? (double)loads.power : 0;
 }
+static double advise_touching(const dem_world *world, void *user) {
+    (void)user;
+    return dem_counters_get(world).contacts;
+}
 static double advise_none(const dem_world *world, void *user) {
     (void)world; (void)user;
     return (double)NAN;
@@ -223,6 +227,35 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_hash_get(asked), dem_world_hash_get(control));
         dem_world_destroy(asked);
         dem_world_destroy(control);
+    }
+    TEST("grains on both sides of a sheet do not touch in trials either") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_trials_desc ask = DEM_TRIALS_DESC;
+        dem_trials trials;
+        dem_world *world;
+        dem_material stuff;
+        int i;
+        desc.dt = DEM_R(1e-6);
+        world = dem_world_create(&desc);
+        stuff = scene_material(world, 1e7, 0.5, 0, 0);
+        scene_floor(world, stuff, -0.01, -0.01, 0.01, 0.01, 1, 1);
+        for (i = -1; i < 2; i += 2) {
+            const dem_body b = dem_sphere_add(world, stuff, DEM_R(1e-3), at(1e-3, 0, 9.9e-4*i));
+            scene_move(world, b, at(0, 0, -i), at(0, 0, 0));       /* towards the sheet */
+        }
+        ask.duration = 1e-4;
+        ask.budget = 1e9;
+        ask.observable_count = 1;
+        ask.observables[0].name = "grains that touch";
+        ask.observables[0].function = advise_touching;
+        ask.observables[0].scale = 1;
+        CHECK_EQ(dem_trials_run(world, &ask, &trials), DEM_OK);
+        CHECK(trials.count > 2 && trials.trial[0].done > 0);
+        for (i = 0; i < trials.count; i++) CHECK_NEAR(trials.trial[i].value[0], 0, 0);
+        CHECK_EQ(scene_step(world, 50), DEM_OK);
+        CHECK_EQ(dem_counters_get(world).contacts, 0);
+        CHECK_EQ(dem_counters_get(world).wall_contacts, 2);
+        dem_world_destroy(world);
     }
     TEST("trials detect a step so large that impacts gain energy, and advise another") {
         dem_world_desc desc = DEM_WORLD_DESC;
