@@ -56,7 +56,7 @@ static int32_t rel_do_frame(dem_world *w, void *at) {
     dem_replay *r = a->replay ? rel_replays[a->replay - 1] : 0;
     (void)w;
     if (r && dem_replay_value_set(r, "a [m]", a->value) == DEM_OK) dem_replay_frame_write(r);
-    return r != 0;                             /* a frame that cannot be written ends the replay, not the run */
+    return a->replay != 0;                     /* a replay ends with its world, or by a frame that cannot be written */
 }
 /* ---- events ---- */
 typedef struct rel_a_events { int unused; dem_events_desc d; } rel_a_events;

@@ -66,6 +66,7 @@ static int rel_conserved(rel_case *c, int angular) {
     rel_leave_outside(c, !angular);
     if (angular && (rel_has(c, "impulses") || rel_has(c, "symplectic Euler"))) rel_round_bodies(&rel_own);
     if (!rel_instead(c) || !c->base.contacts) return REL_SKIPPED;
+    if (angular && rel_has(c, "impulses") && (double)dem_counters_get(c->base.w).overlap_max > 1e-6) return REL_SKIPPED;
     for (k = 0; k < c->base.marks; k++) all = fmax(all, c->base.mark[k].most[angular]);
     c->allowed[0] = (rel_has(c, "position Verlet") ? 1e-11 : 10*DBL_EPSILON*c->s->steps)*all;
     for (k = 1; k < c->base.marks; k++)
@@ -84,7 +85,7 @@ static int rel_momentum(rel_case *c) { return rel_conserved(c, 0); }
    their own, so that friction exerts a torque of a gap times its impulse: they are replaced by spheres. So they are
    with symplectic Euler, where the velocity is that of the end of a step, and the angular momentum of a shape that of
    its middle (docs/theory_surfaces.md). Joints close gaps by moving bodies that keep their velocities
-   (docs/impulses.md); they are left out.
+   (docs/impulses.md); they are left out. Overlaps are closed so, too: scenes that have one are left out.
    Forward Euler moves bodies by the velocity before the force has acted: dt^2 v x F is lost in each step. */
 static int rel_angular(rel_case *c) { return rel_has(c, "forward Euler") ? REL_SKIPPED : rel_conserved(c, 1); }
 /* ---- counted ---- */

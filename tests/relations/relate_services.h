@@ -8,8 +8,7 @@ static int rel_scene_has(const rel_scene *s, int call) {
     return 0;
 }
 /* Must the file of an op have the same bytes? A replay ends with its world, and after a frame that was not
-   written.    Checkpoints contain
-   the number of threads, the memory in use, and where dem_world_run should have ended. */
+   written. Checkpoints contain the number of threads, the memory in use, and where dem_world_run should have ended. */
 static int rel_file_counts(const rel_op *op, const rel_how *how) {
     const rel_set *kind = op->call == REL_OUTPUT ? rel_find((rel_op *)op, "kind") : 0;
     if (op->call == REL_REPLAY) return !how->checkpoint && !how->refuse;

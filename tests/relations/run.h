@@ -285,6 +285,16 @@ static void rel_files(rel_run *r) {
 }
 /* Writes a checkpoint and continues from it: in a new world (how 1) or in one that has run (2). What was noted after
    the checkpoint was written counts no more. */
+/* Makes the calls of a step in a world that has not run: bodies at rest have no temperature to scale. */
+static int rel_calls_again(rel_run *r, int step) {
+    int from = 1;
+    while (!rel_calls_at(r, from, step)) {
+        if (!r->refused || r->s->op[r->refused - 1].call != REL_TEMPERATURE) return 0;
+        from = r->refused;
+        r->refused = 0;
+    }
+    return 1;
+}
 static int rel_checkpoint(rel_run *r, const rel_how *how, int step) {
     const uint64_t before = noted;
     char path[64];
@@ -298,6 +308,7 @@ static int rel_checkpoint(rel_run *r, const rel_how *how, int step) {
     if (ok && how->checkpoint == 2) {
         w = r->w;
         ok = dem_world_step(w, 3) == DEM_OK;   /* what the file replaces */
+        if (!ok) rel_tell(r, dem_world_error_get(w));
     } else if (ok) {                           /* one made by the same calls */
         dem_world *old = r->w;
         int i, at;
@@ -305,7 +316,7 @@ static int rel_checkpoint(rel_run *r, const rel_how *how, int step) {
         ok = r->w != 0;
         for (at = 0; at <= step && ok; at++) {
             for (i = 1; i < r->s->count && r->s->op[i].step != at; i++) continue;
-            if (i < r->s->count && at < step) ok = rel_calls_at(r, 1, at);
+            if (i < r->s->count && at < step) ok = rel_calls_again(r, at);
         }
         dem_world_destroy(old);
         w = r->w;
