@@ -283,8 +283,6 @@ static void rel_files(rel_run *r) {
     }
     noted = before;
 }
-/* Writes a checkpoint and continues from it: in a new world (how 1) or in one that has run (2). What was noted after
-   the checkpoint was written counts no more. */
 /* Makes the calls of a step in a world that has not run: bodies at rest have no temperature to scale. */
 static int rel_calls_again(rel_run *r, int step) {
     int from = 1;
@@ -295,6 +293,8 @@ static int rel_calls_again(rel_run *r, int step) {
     }
     return 1;
 }
+/* Writes a checkpoint and continues from it: in a new world (how 1) or in one that has run (2). What was noted after
+   the checkpoint was written counts no more. */
 static int rel_checkpoint(rel_run *r, const rel_how *how, int step) {
     const uint64_t before = noted;
     char path[64];
