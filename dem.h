@@ -26750,13 +26750,24 @@ static int demi_joints_room(dem_world *w) {
 
 /* --- the system of one step --- */
 
-/* One end of a joint in the world frame: lever arm from the body's centre, m; joined point, m;
-   axis, unit. */
+/* One end of a joint in the world frame: arm from the body, m; joined point, m; axis, unit. */
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
 /* Returns the time, s, between the contact detections of this step and the next. A body that has
    made no step since it was set is at the beginning of the step in the first, not in the middle. */
 static dem_real demi_knot_ahead(const dem_world *w, int body) {
     return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
+}
+/* Returns the velocity, m/s, of point `at` in the frame of a wall that has this pose. */
+static dem_vec3 demi_held_speed(const dem_pose *pose, dem_vec3 at) {
+    return demi_surface_at(pose, demi_add(pose->position, demi_rotate(pose->rotation, at)));
+}
+/* Returns the way, m, of such a point in `by`, s; mid: pose midway. Exact for a steady screw. */
+static dem_vec3 demi_held_way(const dem_pose *mid, dem_vec3 at, dem_real by) {
+    const dem_vec3 way = demi_scale(demi_held_speed(mid, at), by);
+    const dem_vec3 half = demi_scale(mid->spin, by/2);
+    const dem_real x = demi_length(half), chord = x > 0 ? (dem_real)demi_sin((double)x)/x : 1;
+    const dem_real along = x > 0 ? demi_dot(way, half)/(x*x) : 0;
+    return demi_add(demi_scale(way, chord), demi_scale(half, (1 - chord)*along));
 }
 /* Returns end 0 (a) or 1 (b) of a joint: as it is now, or (`ahead`) at the next detection, with the
    velocities of the impulses found so far. */
@@ -26781,11 +26792,10 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
         if (j->desc.wall.id) {
             const demi_wall *wall = &w->walls[demi_wall_place(j->desc.wall)];
             const dem_pose *pose = &wall->pose;
-            const dem_quat q = demi_quat_exp(demi_scale(wall->ahead.spin, by));
-            o.point = dem_quat_rotate(q, demi_rotate(pose->rotation, o.point));
-            o.point = demi_add(demi_add(pose->position, o.point),
-                               demi_scale(wall->ahead.velocity, by));
-            o.axis = dem_quat_rotate(q, demi_rotate(pose->rotation, o.axis));
+            o.point = demi_add(demi_add(pose->position, demi_rotate(pose->rotation, o.point)),
+                               demi_held_way(&wall->ahead, o.point, by));
+            o.axis = dem_quat_rotate(demi_quat_exp(demi_scale(wall->ahead.spin, by)),
+                                     demi_rotate(pose->rotation, o.axis));
         }
     }
     return o;
@@ -26823,8 +26833,7 @@ static dem_real demi_rod_size(const dem_world *w, const demi_rod *r) {
     const dem_real a = demi_radius(w, r->a);
     return r->b < w->bodies.count ? DEMI_MIN(a, demi_radius(w, r->b)) : a;
 }
-/* True if row k of a joint is in force. Planar worlds have no tilt; a motor at its limit is a
-   torque instead of a row. */
+/* True if row k of a joint is in force. Planar worlds have no tilt; a motor at its limit no row. */
 static int demi_rod_row(const dem_world *w, const demi_rod *r, int k) {
     return k < r->rows && (k < 3 || (k < 5 ? !w->desc.planar : !r->stuck));
 }
@@ -26843,8 +26852,7 @@ static void demi_rod_jacobian(const dem_world *w, const demi_rod *r, int end, in
         row[3 + i] = turns ? sign*(double)turn[i] : 0;
     }
 }
-/* Computes the 6 x 6 matrix of mass, kg, and inertia, kg m2, of a body; inertia 1 if it cannot
-   rotate. */
+/* Computes the 6 x 6 matrix of mass, kg, and inertia, kg m2, of a body; 1 if it cannot rotate. */
 static void demi_knot_mass(const dem_world *w, int body, double *m) {
     const double inv = (double)w->bodies.inv_inertia[body];
     int i, k;
@@ -26911,8 +26919,7 @@ static void demi_block_times(double *y, const double *a, const double *x, int tr
     for (i = 0; i < 6; i++)
         for (k = 0; k < 6; k++) y[i] -= a[transposed ? 6*k + i : 6*i + k]*x[k];
 }
-/* Returns the block of two linked nodes: in the column of the one eliminated first, with the rows
-   of the other. */
+/* Returns the block of two linked nodes: column of the one eliminated first, rows of the other. */
 static double *demi_knots_block(const demi_solver *s, int a, int b) {
     const int early = s->knots[a].rank < s->knots[b].rank ? a : b, late = early == a ? b : a;
     int e = s->knots[early].first;
@@ -27113,8 +27120,7 @@ static void demi_joints_warm(dem_world *w) {
                                                              demi_scale(r->along[2], r->torque)));
     }
 }
-/* Predicts the orientations of joined bodies at the next detection, with the integrator's own
-   scheme. */
+/* Predicts the orientations of joined bodies at the next detection, by the integrator's scheme. */
 static void demi_knots_ahead(dem_world *w) {
     const demi_solver *s = &w->solver;
     int i;
@@ -27148,14 +27154,9 @@ static dem_vec3 demi_knot_tumbles(const dem_world *w, int body, dem_vec3 spin) {
 static dem_vec3 demi_rod_driven(const dem_world *w, int joint) {
     const demi_joint *j = &w->joints[joint];
     const demi_wall *wall = j->desc.wall.id ? &w->walls[demi_wall_place(j->desc.wall)] : 0;
-    const dem_pose *was, *next;
     if (!wall || wall->motion.kind == DEM_MOTION_FIXED) return demi_v(0, 0, 0);
-    was = &wall->was;
-    next = &wall->ahead;
-    return demi_scale(demi_sub(
-        demi_surface_at(next, demi_add(next->position, demi_rotate(next->rotation, j->arm[1]))),
-        demi_surface_at(was, demi_add(was->position, demi_rotate(was->rotation, j->arm[1])))),
-        1/w->solver.dt);
+    return demi_scale(demi_sub(demi_held_speed(&wall->ahead, j->arm[1]),
+                               demi_held_speed(&wall->was, j->arm[1])), 1/w->solver.dt);
 }
 /* Computes the acceleration of a relative to b in the first five rows if no force acted, m/s2 and
    rad/s2: the mean of those with the velocities before and after the step. */
@@ -27421,8 +27422,7 @@ static dem_real demi_rod_gap(const dem_world *w, int i) {
     return demi_length(demi_nearest(&p, demi_sub(x.point, y.point))) +
         demi_length(demi_cross(y.axis, x.axis))*demi_rod_size(w, w->solver.rods + i);
 }
-/* Stores the results of joints: forces, torques, power and remaining gaps. Adds the forces to walls
-   and to fixed bodies. */
+/* Stores forces, torques, power and gaps of joints. Adds the forces to walls and fixed bodies. */
 static void demi_joints_tell(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;

@@ -641,6 +641,31 @@ static void unused_values(void) {
     CHECK(dem_world_hash_get(world) == hash);
     dem_world_destroy(world);
 }
+/* Where a ball, which is joined to a plane that begins to rotate about `middle`, is after 40 steps, relative to it. */
+static dem_vec3 led_round(dem_vec3 middle) {
+    dem_joint_desc desc = DEM_JOINT_DESC;
+    dem_motion motion = DEM_MOTION;
+    dem_material m;
+    dem_world *world = jointed(0, 2e-4, 1, &m);
+    const dem_wall wall = dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+    dem_vec3 x = middle;
+    x.x += DEM_R(0.02);
+    desc.kind = DEM_JOINT_POINT;
+    desc.a = ball(world, m, 0.005, x);
+    desc.wall = wall;
+    desc.point = x;
+    CHECK(dem_joint_add(world, &desc).id);
+    motion.kind = DEM_MOTION_ROTATING;
+    motion.point = middle;
+    motion.axis = at(0, 0, 1);
+    motion.speed = 100;
+    motion.ramp = 0.005;
+    CHECK_EQ(dem_wall_motion_set(world, wall, &motion), DEM_OK);
+    CHECK_EQ(scene_step(world, 40), DEM_OK);
+    x = scene_state(world, desc.a).position;
+    dem_world_destroy(world);
+    return at(x.x - middle.x, x.y - middle.y, x.z - middle.z);
+}
 /* Fifty balls on top of each other, and one sweep. */
 static void short_of_sweeps(void) {
     int stops, i;
@@ -878,6 +903,14 @@ int main(int argc, char **argv) {
         fixed_bodies();
     TEST("joints: a moving wall does work on the bodies joined to it, and the ledger has it")
         driven();
+    TEST("joints: a wall that begins to rotate leads a ball alike wherever its axis is") {
+        const dem_vec3 near_by = led_round(at(0, 0, 0)), far = led_round(at(0.5, -0.25, 0.125));
+        const double eps = sizeof(dem_real) == 8 ? 1e-12 : 1e-6;
+        CHECK_NEAR(far.x, near_by.x, eps);
+        CHECK_NEAR(far.y, near_by.y, eps);
+        CHECK_NEAR(far.z, near_by.z, eps);
+        CHECK(near_by.y > 0.005);
+    }
     TEST("joints: 4,000 joints and bodies added and removed leave memory and cost of a step unchanged")
         ids();
     TEST("joints: a joint ends with its body or wall, and its id is invalid at once")
