@@ -5525,6 +5525,7 @@ struct dem_world {
     dem_real *wall_shift;          /* x 3, m: from the grain to its image at the wall */
     int32_t *wall_cell;            /* of a tessellation that repeats: see demi_cell_shift */
     demi_walled *walled;           /* bodies (if `sheeted`) */
+    unsigned char *by_sheet;       /* bodies (if `sheeted`): 1 if a sheet is among its candidates */
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     /* if the law writes rates of user-defined numbers: domain_count x wall_count x real_count, and
        real_count for each entry of cross_force; else null */
@@ -15971,9 +15972,10 @@ static void demi_walled_add(dem_world *w, int first, int end) {
         demi_walled *of = w->walled + w->wall_body[k];
         if (!of->end) of->first = k;
         of->end = k + 1;
-        if (demi_surface_of(w, w->wall_id[k])->open)
-            of->gap = DEMI_MIN(of->gap, w->wall_gap[k] < DEMI_ONLY_SHEET ? w->wall_gap[k]
-                                                                         : -DEMI_ONLY_SHEET);
+        if (!demi_surface_of(w, w->wall_id[k])->open) continue;
+        w->by_sheet[w->wall_body[k]] = 1;
+        of->gap = DEMI_MIN(of->gap, w->wall_gap[k] < DEMI_ONLY_SHEET ? w->wall_gap[k]
+                                                                     : -DEMI_ONLY_SHEET);
     }
 }
 /* Notes the wall candidates of each body, while some surface is a sheet. Returns 0 if memory ran
@@ -15983,8 +15985,8 @@ static int demi_walled_note(dem_world *w) {
     const int n = w->bodies.count + w->join_room;
     int d, i;
     if (!w->sheeted) return 1;
-    if (!DEMI_GROW(w, w->walled, (size_t)n)) return 0;
-    for (i = 0; i < n; i++) w->walled[i] = none;
+    if (!DEMI_GROW(w, w->walled, (size_t)n) || !DEMI_GROW(w, w->by_sheet, (size_t)n)) return 0;
+    for (i = 0; i < n; i++) { w->walled[i] = none; w->by_sheet[i] = 0; }
     for (d = 0; d < w->domain_count; d++)
         demi_walled_add(w, d*w->wall_stride, d*w->wall_stride + w->domains[d].walls);
     return 1;
@@ -16649,19 +16651,17 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     }
     return sides == corners;
 }
-/* True if a sheet among the candidates of `body` that may be nearer to it than `gap` (m) crosses
-   the line from its centre to that of `other`, which must not ignore it. to: m, to the image of the
-   other. */
-static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 to, dem_real gap) {
-    const int material = w->bodies.material[other] - 1;
+/* True if a sheet among the candidates of `body` crosses the line from its centre to that of
+   `other`, which must not ignore it. to: m, to the image of the other. */
+static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 to) {
     dem_vec3 from = to, way = to, x;
     int k, had = -1;
     for (k = w->walled[body].first; k < w->walled[body].end; k++) {
         const demi_wall *wall = demi_surface_of(w, w->wall_id[k]);
         const demi_wall *whole = wall->scale ? &w->walls[wall->lead] : wall;
         const dem_real *shift = w->wall_shift + 3*(size_t)k, *R = wall->pose.rotation;
-        if (!wall->open || (w->wall_gap[k] > gap && w->wall_gap[k] < DEMI_ONLY_SHEET) ||
-            (w->effects.ignoring && demi_ignores(w, material, wall->material))) continue;
+        if (!wall->open || (w->effects.ignoring &&
+            demi_ignores(w, w->bodies.material[other] - 1, wall->material))) continue;
         if (had < 0 || w->wall_id[k] != w->wall_id[had] ||
             memcmp(shift, w->wall_shift + 3*(size_t)had, 3*sizeof *shift)) {
             from = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
@@ -16677,23 +16677,23 @@ static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 t
     }
     return 0;
 }
-/* True if a sheet lies between bodies a and b: if the line between their centres crosses it. Where
-   the two are candidates of each other, the crossing is no farther from one of the two spheres than
-   half their gap (0.999: for rounding), and so the sheet is a candidate of that one. If it is not
-   one of the other too, it was beyond that one's candidates (demi_cover) when they were listed, and
-   the two are that much closer to each other than to it. Tessellations differ for the two. to: m,
-   from a to the image of b. */
+/* The distance from body i, m, within which no sheet was when the candidates were listed: at most
+   demi_cover; -DEMI_ONLY_SHEET if it is not known, or if bodies have their own tessellations. */
+static dem_real demi_sheet_free(const dem_world *w, int i) {
+    return w->effects.scales ? -DEMI_ONLY_SHEET : DEMI_MIN(w->walled[i].gap, demi_cover(w));
+}
+/* True if a sheet lies between bodies a and b: if the line between their centres crosses it. The
+   distances of the crossing from the two spheres add up to their gap (0.999: for rounding), so it
+   is no farther from each than the gap less what is free of sheets around the other, and is among
+   the candidates of each sphere that is so near to it. to: m, from a to the image of b. */
 static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
-    const demi_walled *p = w->walled + a, *q = w->walled + b;
-    const dem_real gone = (dem_real)(w->margin.gone + w->margin.walls_gone);
-    const dem_real apart = demi_length(to) -
-        DEM_R(0.999)*(demi_radius(w, a) + demi_radius(w, b));
-    const dem_real both = DEMI_MAX(apart, DEM_R(0))/2 + gone;
-    const dem_real one = w->effects.scales ? both : DEMI_MIN(both, apart - demi_cover(w) + 2*gone);
-    const dem_real gap_a = q->gap < DEMI_ONLY_SHEET ? both : one;
-    const dem_real gap_b = p->gap < DEMI_ONLY_SHEET ? both : one;
-    return (p->gap <= gap_a && demi_sheet_before(w, a, b, to, gap_a)) ||
-           (q->gap <= gap_b && demi_sheet_before(w, b, a, demi_scale(to, -1), gap_b));
+    const dem_real gap = demi_length(to) - DEM_R(0.999)*(demi_radius(w, a) + demi_radius(w, b)) +
+        2*(dem_real)(w->margin.gone + w->margin.walls_gone);
+    const dem_real free_a = demi_sheet_free(w, a), free_b = demi_sheet_free(w, b);
+    if (gap < free_a + free_b) return 0;
+    if (gap - free_b < demi_cover(w)) return demi_sheet_before(w, a, b, to);
+    return demi_sheet_before(w, b, a, demi_scale(to, -1)) ||
+           (gap - free_a >= demi_cover(w) && demi_sheet_before(w, a, b, to));
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */
@@ -16704,7 +16704,7 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     for (q = first; q < end; q++) {
         const int k = out[q], a = list->a[k], b = list->b[k];
         if (k != last)
-            parted = DEMI_MIN(w->walled[a].gap, w->walled[b].gap) < DEMI_ONLY_SHEET &&
+            parted = (w->by_sheet[a] || w->by_sheet[b]) &&
                 demi_sheet_between(w, a, b, demi_add(demi_at(w->image_shift + list->image[k]),
                     demi_sub(demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a))));
         last = k;
@@ -20380,17 +20380,15 @@ DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
     return !(v->gap[k] > v->gone) &&
            !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
-/* Corrects the contact points from `from` on for open rings (>>touch): those of the image at which
-   the view is or, where the surface continues in others, of all images; `start` is before these. */
+/* Corrects the contact points for open rings (>>touch): those of the image at which the view is or,
+   where the surface continues in others, of all images; `start` is before these. */
 static void demi_view_rings(const demi_view *start, const demi_part *part, dem_real within,
-                            dem_real near_by, int from, demi_places *p) {
+                            dem_real near_by, demi_places *p) {
     const int numbers = start->wall->number_count, all = start->wall->wraps, offset = p->offset;
     demi_view v = *start;
     demi_touching *t;
     demi_ring ring;
     int q;
-    for (q = from; q < p->count && !(p->at[q].share < DEM_R(-1e-3)); q++) continue;
-    if (q == p->count) return;                  /* no negative weight */
     memset(&ring, 0, sizeof ring);
     ring.link = v.w->touching_links + v.w->domains[v.d].touching_first;
     for (ring.offset = all ? 0 : offset; all ? demi_view_next(&v) : ring.offset == offset;
@@ -20417,7 +20415,7 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
     const dem_real near_by = within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9));
     demi_places p = demi_places_begin(start, out);
     const int numbers = wall->number_count;
-    int k, q, from, one, reached;
+    int k, q, from, one, reached, ringed = 0;   /* ringed: a weight is negative */
     for (; demi_view_next(&v); p.offset += numbers) {
         from = p.count;
         for (q = 0, one = v.count, reached = 0; q < v.count && !part; q++) {
@@ -20435,10 +20433,12 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
         for (q = 0; q < v.count && part; q++)
             if (!(v.gap[q] > v.gone))
                 demi_facet_places(wall, v.element[q], v.x, part, within, &p);
-        if (!wall->wraps) demi_view_rings(&v, part, within, near_by, from, &p);
+        for (q = from, ringed = ringed && wall->wraps; q < p.count; q++)
+            ringed |= p.at[q].share < DEM_R(-1e-3);
+        if (ringed && !wall->wraps) demi_view_rings(&v, part, within, near_by, &p);
         for (q = from; q < p.count; q++) { p.at[q].shift = v.shift; p.at[q].base = v.base; }
     }
-    if (wall->wraps) demi_view_rings(start, part, within, near_by, 0, &p);
+    if (ringed && wall->wraps) demi_view_rings(start, part, within, near_by, &p);
     if (p.count > 1 || (p.count && p.at->share < 1)) demi_places_merge(&p, near_by);
     for (k = 0; k < p.count; k++) {
         demi_touching *t = p.at + k;

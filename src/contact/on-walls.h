@@ -109,17 +109,15 @@ DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
     return !(v->gap[k] > v->gone) &&
            !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
-/* Corrects the contact points from `from` on for open rings (>>touch): those of the image at which
-   the view is or, where the surface continues in others, of all images; `start` is before these. */
+/* Corrects the contact points for open rings (>>touch): those of the image at which the view is or,
+   where the surface continues in others, of all images; `start` is before these. */
 static void demi_view_rings(const demi_view *start, const demi_part *part, dem_real within,
-                            dem_real near_by, int from, demi_places *p) {
+                            dem_real near_by, demi_places *p) {
     const int numbers = start->wall->number_count, all = start->wall->wraps, offset = p->offset;
     demi_view v = *start;
     demi_touching *t;
     demi_ring ring;
     int q;
-    for (q = from; q < p->count && !(p->at[q].share < DEM_R(-1e-3)); q++) continue;
-    if (q == p->count) return;                  /* no negative weight */
     memset(&ring, 0, sizeof ring);
     ring.link = v.w->touching_links + v.w->domains[v.d].touching_first;
     for (ring.offset = all ? 0 : offset; all ? demi_view_next(&v) : ring.offset == offset;
@@ -146,7 +144,7 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
     const dem_real near_by = within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9));
     demi_places p = demi_places_begin(start, out);
     const int numbers = wall->number_count;
-    int k, q, from, one, reached;
+    int k, q, from, one, reached, ringed = 0;   /* ringed: a weight is negative */
     for (; demi_view_next(&v); p.offset += numbers) {
         from = p.count;
         for (q = 0, one = v.count, reached = 0; q < v.count && !part; q++) {
@@ -164,10 +162,12 @@ static int demi_facets_touch(const demi_view *start, dem_real r, const demi_part
         for (q = 0; q < v.count && part; q++)
             if (!(v.gap[q] > v.gone))
                 demi_facet_places(wall, v.element[q], v.x, part, within, &p);
-        if (!wall->wraps) demi_view_rings(&v, part, within, near_by, from, &p);
+        for (q = from, ringed = ringed && wall->wraps; q < p.count; q++)
+            ringed |= p.at[q].share < DEM_R(-1e-3);
+        if (ringed && !wall->wraps) demi_view_rings(&v, part, within, near_by, &p);
         for (q = from; q < p.count; q++) { p.at[q].shift = v.shift; p.at[q].base = v.base; }
     }
-    if (wall->wraps) demi_view_rings(start, part, within, near_by, 0, &p);
+    if (ringed && wall->wraps) demi_view_rings(start, part, within, near_by, &p);
     if (p.count > 1 || (p.count && p.at->share < 1)) demi_places_merge(&p, near_by);
     for (k = 0; k < p.count; k++) {
         demi_touching *t = p.at + k;

@@ -500,6 +500,7 @@ struct dem_world {
     dem_real *wall_shift;          /* x 3, m: from the grain to its image at the wall */
     int32_t *wall_cell;            /* of a tessellation that repeats: see demi_cell_shift */
     demi_walled *walled;           /* bodies (if `sheeted`) */
+    unsigned char *by_sheet;       /* bodies (if `sheeted`): 1 if a sheet is among its candidates */
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     /* if the law writes rates of user-defined numbers: domain_count x wall_count x real_count, and
        real_count for each entry of cross_force; else null */

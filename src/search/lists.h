@@ -173,9 +173,10 @@ static void demi_walled_add(dem_world *w, int first, int end) {
         demi_walled *of = w->walled + w->wall_body[k];
         if (!of->end) of->first = k;
         of->end = k + 1;
-        if (demi_surface_of(w, w->wall_id[k])->open)
-            of->gap = DEMI_MIN(of->gap, w->wall_gap[k] < DEMI_ONLY_SHEET ? w->wall_gap[k]
-                                                                         : -DEMI_ONLY_SHEET);
+        if (!demi_surface_of(w, w->wall_id[k])->open) continue;
+        w->by_sheet[w->wall_body[k]] = 1;
+        of->gap = DEMI_MIN(of->gap, w->wall_gap[k] < DEMI_ONLY_SHEET ? w->wall_gap[k]
+                                                                     : -DEMI_ONLY_SHEET);
     }
 }
 /* Notes the wall candidates of each body, while some surface is a sheet. Returns 0 if memory ran
@@ -185,8 +186,8 @@ static int demi_walled_note(dem_world *w) {
     const int n = w->bodies.count + w->join_room;
     int d, i;
     if (!w->sheeted) return 1;
-    if (!DEMI_GROW(w, w->walled, (size_t)n)) return 0;
-    for (i = 0; i < n; i++) w->walled[i] = none;
+    if (!DEMI_GROW(w, w->walled, (size_t)n) || !DEMI_GROW(w, w->by_sheet, (size_t)n)) return 0;
+    for (i = 0; i < n; i++) { w->walled[i] = none; w->by_sheet[i] = 0; }
     for (d = 0; d < w->domain_count; d++)
         demi_walled_add(w, d*w->wall_stride, d*w->wall_stride + w->domains[d].walls);
     return 1;

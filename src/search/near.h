@@ -434,19 +434,17 @@ static int demi_element_crossed(const demi_wall *wall, int element, dem_vec3 x, 
     }
     return sides == corners;
 }
-/* True if a sheet among the candidates of `body` that may be nearer to it than `gap` (m) crosses
-   the line from its centre to that of `other`, which must not ignore it. to: m, to the image of the
-   other. */
-static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 to, dem_real gap) {
-    const int material = w->bodies.material[other] - 1;
+/* True if a sheet among the candidates of `body` crosses the line from its centre to that of
+   `other`, which must not ignore it. to: m, to the image of the other. */
+static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 to) {
     dem_vec3 from = to, way = to, x;
     int k, had = -1;
     for (k = w->walled[body].first; k < w->walled[body].end; k++) {
         const demi_wall *wall = demi_surface_of(w, w->wall_id[k]);
         const demi_wall *whole = wall->scale ? &w->walls[wall->lead] : wall;
         const dem_real *shift = w->wall_shift + 3*(size_t)k, *R = wall->pose.rotation;
-        if (!wall->open || (w->wall_gap[k] > gap && w->wall_gap[k] < DEMI_ONLY_SHEET) ||
-            (w->effects.ignoring && demi_ignores(w, material, wall->material))) continue;
+        if (!wall->open || (w->effects.ignoring &&
+            demi_ignores(w, w->bodies.material[other] - 1, wall->material))) continue;
         if (had < 0 || w->wall_id[k] != w->wall_id[had] ||
             memcmp(shift, w->wall_shift + 3*(size_t)had, 3*sizeof *shift)) {
             from = demi_unrotate(R, demi_sub(demi_add(demi_at(w->bodies.pos + 4*body),
@@ -462,23 +460,23 @@ static int demi_sheet_before(const dem_world *w, int body, int other, dem_vec3 t
     }
     return 0;
 }
-/* True if a sheet lies between bodies a and b: if the line between their centres crosses it. Where
-   the two are candidates of each other, the crossing is no farther from one of the two spheres than
-   half their gap (0.999: for rounding), and so the sheet is a candidate of that one. If it is not
-   one of the other too, it was beyond that one's candidates (demi_cover) when they were listed, and
-   the two are that much closer to each other than to it. Tessellations differ for the two. to: m,
-   from a to the image of b. */
+/* The distance from body i, m, within which no sheet was when the candidates were listed: at most
+   demi_cover; -DEMI_ONLY_SHEET if it is not known, or if bodies have their own tessellations. */
+static dem_real demi_sheet_free(const dem_world *w, int i) {
+    return w->effects.scales ? -DEMI_ONLY_SHEET : DEMI_MIN(w->walled[i].gap, demi_cover(w));
+}
+/* True if a sheet lies between bodies a and b: if the line between their centres crosses it. The
+   distances of the crossing from the two spheres add up to their gap (0.999: for rounding), so it
+   is no farther from each than the gap less what is free of sheets around the other, and is among
+   the candidates of each sphere that is so near to it. to: m, from a to the image of b. */
 static int demi_sheet_between(const dem_world *w, int a, int b, dem_vec3 to) {
-    const demi_walled *p = w->walled + a, *q = w->walled + b;
-    const dem_real gone = (dem_real)(w->margin.gone + w->margin.walls_gone);
-    const dem_real apart = demi_length(to) -
-        DEM_R(0.999)*(demi_radius(w, a) + demi_radius(w, b));
-    const dem_real both = DEMI_MAX(apart, DEM_R(0))/2 + gone;
-    const dem_real one = w->effects.scales ? both : DEMI_MIN(both, apart - demi_cover(w) + 2*gone);
-    const dem_real gap_a = q->gap < DEMI_ONLY_SHEET ? both : one;
-    const dem_real gap_b = p->gap < DEMI_ONLY_SHEET ? both : one;
-    return (p->gap <= gap_a && demi_sheet_before(w, a, b, to, gap_a)) ||
-           (q->gap <= gap_b && demi_sheet_before(w, b, a, demi_scale(to, -1), gap_b));
+    const dem_real gap = demi_length(to) - DEM_R(0.999)*(demi_radius(w, a) + demi_radius(w, b)) +
+        2*(dem_real)(w->margin.gone + w->margin.walls_gone);
+    const dem_real free_a = demi_sheet_free(w, a), free_b = demi_sheet_free(w, b);
+    if (gap < free_a + free_b) return 0;
+    if (gap - free_b < demi_cover(w)) return demi_sheet_before(w, a, b, to);
+    return demi_sheet_before(w, b, a, demi_scale(to, -1)) ||
+           (gap - free_a >= demi_cover(w) && demi_sheet_before(w, a, b, to));
 }
 /* Removes pairs on both sides of a sheet from entries first .. end - 1 of the pruned list of a work
    group. Returns the new end. */
@@ -489,7 +487,7 @@ static int demi_near_part(const dem_world *w, const demi_list *list, int d, int 
     for (q = first; q < end; q++) {
         const int k = out[q], a = list->a[k], b = list->b[k];
         if (k != last)
-            parted = DEMI_MIN(w->walled[a].gap, w->walled[b].gap) < DEMI_ONLY_SHEET &&
+            parted = (w->by_sheet[a] || w->by_sheet[b]) &&
                 demi_sheet_between(w, a, b, demi_add(demi_at(w->image_shift + list->image[k]),
                     demi_sub(demi_at(w->bodies.pos + 4*b), demi_at(w->bodies.pos + 4*a))));
         last = k;
