@@ -132,7 +132,7 @@ CODE(nod_of, static void nod_of(double t, dem_pose *pose, void *user) {
 DATA(far_pull, dem_real far_pull[1] = {(dem_real)0.5};)
 DATA(some_rate, dem_real some_rate[1] = {(dem_real)0.3};)
 DATA(nod_by, dem_real nod_by[1] = {(dem_real)1e-4};)
-DATA(bond_own, bond bond_own = {(dem_real)1e6, (dem_real)2.5, (dem_real)3e-4, (dem_real)1e5, (dem_real)1e5,
+DATA(bond_own, bond bond_own = {(dem_real)1e6, (dem_real)2.5, (dem_real)3e-4, (dem_real)1e4, (dem_real)1e4,
     (dem_real)0.1};)
 DATA(capillary_own, capillary capillary_own = {(dem_real)0.073, (dem_real)0.3, (dem_real)4e-12};)
 DATA(charge_own, const dem_real charge_work[] = {(dem_real)4.5, (dem_real)4.8};

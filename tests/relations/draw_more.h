@@ -54,6 +54,7 @@ static int rel_own_law(rel_draw *d, const rel_law_row *l) {
 REL_LAW(rel_law_rows, "law_inline", "law_in_rows", 0, 0, 3, 1, 0, 0, 0, DEM_NORMAL_LINEAR)
 REL_LAW(rel_law_far, "law_far", 0, 0, "far_pull", 3, 1, 0, 0, 0.3*d->R, 0)
 REL_LAW(rel_law_warm, "law_warm", 0, "warm_rate", 0, 3, 1, 1, 0, 0, 0)
+/* bond_own breaks when it is stretched by 1 %, which is before the range ends */
 REL_LAW(rel_law_bond, "bond_law", 0, 0, "bond_own", 8, 2, 1, 4e3, 2e-4, DEM_NORMAL_LINEAR)
 REL_LAW(rel_law_capillary, "capillary_law", 0, 0, "capillary_own", 5, 1, 0, 0, 2e-4, 0)
 REL_LAW(rel_law_charge, "charge_law", 0, 0, "charge_own", 5, 1, 1, 0, 0, 0)
