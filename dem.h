@@ -2965,9 +2965,10 @@ typedef struct dem_ledger {
     double removed;                         /* kinetic energy of removed bodies */
     double throughput;                      /* sum of the magnitudes of what was supplied */
     /* supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or
-       walls are added, moved or removed between steps, materials change. What springs held on a
-       grain that an outlet or an outflow boundary removes is in the residual, and so is what they
-       gain when two walls in one place part below a grain: then both act where one did. */
+       walls are added, moved or removed between steps, materials change. Three amounts are in the
+       residual: what springs held on a grain that an outlet or an outflow boundary removes; what
+       springs gain when two walls in one place part below a grain, because then both act where
+       one did; what a contact holds when it leaves the range of its law. */
     double growth;
     double residual;
     double unknown;                         /* > 0: the user-defined law created energy */
@@ -4158,8 +4159,7 @@ static void demi_print(FILE *file, const char *format, ...) {
     va_end(args);
 }
 /* Prints to `to`, as vsnprintf and snprintf. Return the length of the whole text. */
-static int demi_words_of(char *to, size_t room, const char *format,
-                         va_list args) DEMI_FORMAT(3, 0);
+static int demi_words_of(char *to, size_t room, const char *format, va_list args) DEMI_FORMAT(3, 0);
 static int demi_words_of(char *to, size_t room, const char *format, va_list args) {
     demi_ink o = {0, to, room, 0};
     if (room) *to = 0;
@@ -4238,8 +4238,7 @@ static void demi_sin_cos(double x, double *sine, double *cosine) {
     const double s = r + r*u*(-1.0/6 + u*(1.0/120 + u*(-1.0/5040 + u*(1.0/362880 +
         u*(-1.0/39916800 + u*(1.0/6227020800 + u*(-1.0/1307674368000 + u/355687428096000)))))));
     const double c = 1 - u/2 + u*u*(1.0/24 + u*(-1.0/720 + u*(1.0/40320 + u*(-1.0/3628800 +
-        u*(1.0/479001600 + u*(-1.0/87178291200 + u*(1.0/20922789888000 -
-        u/6402373705728000)))))));
+        u*(1.0/479001600 + u*(-1.0/87178291200 + u*(1.0/20922789888000 - u/6402373705728000)))))));
     if (!demi_finite_double(x)) { *sine = *cosine = x - x; return; }
     *sine = quarter < 1 ? s : quarter < 2 ? c : quarter < 3 ? -s : -c;
     *cosine = quarter < 1 ? c : quarter < 2 ? -s : quarter < 3 ? -c : s;
@@ -5904,8 +5903,7 @@ static int demi_null_write(dem_world *w, const char *call, const void *pointer, 
 }
 /* For all others. They fail in every user-defined function except those of outputs. */
 static int demi_null(dem_world *w, const char *call, const void *pointer, const char *name) {
-    return demi_null_look(w, call, pointer, name) ||
-        (w->look.calling.who && demi_barred(w, call));
+    return demi_null_look(w, call, pointer, name) || (w->look.calling.who && demi_barred(w, call));
 }
 static const dem_material demi_no_material = {0};
 static const dem_shape demi_no_shape = {0};
@@ -6607,8 +6605,7 @@ static int demi_laws_keep(const dem_world *w) {
 /* True if a law in force reads r_eff or m_eff; a user-defined law may. */
 static int demi_laws_sized(const dem_world *w) {
     return w->desc.law || w->effects.twisting ||
-        ((w->laws.normal->traits | w->laws.tangent->traits |
-          w->laws.rolling->traits) & DEMI_SIZED);
+        ((w->laws.normal->traits | w->laws.tangent->traits | w->laws.rolling->traits) & DEMI_SIZED);
 }
 /* True if a law in force reads slopes of the normal force or the stiffness of mid-step. */
 static int demi_laws_precise(const dem_world *w) {
@@ -8477,8 +8474,7 @@ static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a,
 }
 /* Finds which shells are inside which. Returns 0 with an error message if two cross, or if one
    faces the same way as the shell around it. */
-static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c,
-                            demi_shells *s) {
+static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c, demi_shells *s) {
     demi_d3 x;
     int a, b;
     for (a = 0; a < s->count; a++)
@@ -9954,8 +9950,7 @@ static int demi_wall_faceted(const dem_world *w, const demi_wall *wall, int part
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
     const int gaps = kind->traits & DEMI_ONLY_GAPS ||
         (wall->sieve.kind && !demi_sieve_wires(&wall->sieve) && !(wall->sieve.thickness > 0));
-    return kind->tessellate[0] != '0' &&
-        demi_listed(demi_wall_kinds[DEMI_WALL_MESH].touch, part) &&
+    return kind->tessellate[0] != '0' && demi_listed(demi_wall_kinds[DEMI_WALL_MESH].touch, part) &&
         (!demi_listed(kind->touch, part) ||
          (part == DEMI_POLYHEDRON && gaps && demi_response_is(w, DEMI_PRESSING)));
 }
@@ -10014,8 +10009,7 @@ static double demi_shape_mass(const dem_world *w, int material, int shape, doubl
 /* Writes the mass, kg, of a sphere of radius `size`, m (shape -1), or of a shape of scale `size`.
    Returns 1 if the size is not positive or too large, or if dem_real cannot hold the mass, the
    moments of inertia or their inverses: accelerations would be 0 or infinite. */
-static int demi_mass_bad(const dem_world *w, int material, int shape, dem_real size,
-                         double *mass) {
+static int demi_mass_bad(const dem_world *w, int material, int shape, dem_real size, double *mass) {
     const double s = (double)size;
     double x[3];
     int k, bad = !(size > 0) ||
@@ -10455,8 +10449,7 @@ DEM_API dem_result dem_body_reals_set(dem_world *w, dem_body body, const dem_rea
     return DEM_OK;
 }
 DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, __func__, reals,
-                                             w ? w->bodies.count : 0, 1);
+    const dem_result result = demi_reals_ask(w, __func__, reals, w ? w->bodies.count : 0, 1);
     if (result != DEM_OK) return result;
     if (w->bodies.count)
         memcpy(w->bodies.reals, reals,
@@ -11207,8 +11200,7 @@ static void demi_cell_carry(dem_world *w, int begin, int end) {
         demi_put(flow, demi_scale(demi_cell_flow(w, demi_at(w->bodies.half_vel + 4*i)), back*dt));
         for (k = 0; k < 3; k++) {
             const dem_real was = x[k];
-            x[k] = (dem_real)((double)x[k] + by[k]*to[k] + (k ? 0 : shear*to[1]) -
-                              (double)flow[k]);
+            x[k] = (dem_real)((double)x[k] + by[k]*to[k] + (k ? 0 : shear*to[1]) - (double)flow[k]);
             if (w->bodies.backward) w->bodies.last_pos[4*i + k] += x[k] - was;
         }
     }
@@ -12569,8 +12561,7 @@ DEM_API dem_wall dem_wall_profile_add(dem_world *w, dem_material material,
         return none;
     }
     wall.rule = rule;
-    if (!demi_wall_load(w, __func__, &wall, profile->vertex_count, profile->vertices,
-                        2,
+    if (!demi_wall_load(w, __func__, &wall, profile->vertex_count, profile->vertices, 2,
                         profile->segment_count, profile->segments, 2)) return none;
     wall.motion.axis = demi_v(0, 0, 1);
     return demi_wall_adopt(w, __func__, &wall);
@@ -12766,8 +12757,7 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
         return demi_refuse(w, "dem_wall_motion_set", "wall %d would jump by %.3g m (amplitude "
                            "sin(phase)) as its oscillation begins, must be 0 after the first step: "
                            "it would throw the grains in its way; set motion.ramp, or phase 0",
-                           (int)id.id, (double)motion->amplitude*
-                           demi_sin((double)motion->phase));
+                           (int)id.id, (double)motion->amplitude* demi_sin((double)motion->phase));
     if (motion->kind == DEM_MOTION_USER && !motion->function)
         return demi_refuse(w, "dem_wall_motion_set", "wall %d has kind DEM_MOTION_USER and no "
                            "function; set motion.function", (int)id.id);
@@ -13247,8 +13237,7 @@ static void demi_join_part_shells(demi_join *j, const int32_t *part, double *bou
             const int f = j->side[k].facet, own = part[f];
             for (m = i; m < k && part[j->side[m].facet] != own; m++) continue;
             if (m == k && own >= 0 && !(j->mark[f] & DEMI_JOIN_OPEN))
-                demi_join_around(j, j->side + i, end - i, part, own,
-                                 bounds[j->facet[5*f + 4]] < 0);
+                demi_join_around(j, j->side + i, end - i, part, own, bounds[j->facet[5*f + 4]] < 0);
         }
     }
     for (i = 0; i < j->facets; i++)
@@ -13525,8 +13514,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
             if (other == i || (other > i && !closed)) continue;
             for (k = 0; k < 3; k++)
                 if (fabs(middle[3*other + k] - at[k]) > half[3*other + k] + size[k] + tiny) break;
-            if (k < 3 ||
-                demi_shard_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
+            if (k < 3 || demi_shard_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
             t = demi_shard_of(j, other);
             if (other > i && demi_d3_dot(demi_shard_normal(&t), demi_shard_normal(&own)) > 0)
                 continue;
@@ -15308,8 +15296,7 @@ static int demi_levels_lay(dem_world *w) {
                (double)demi_radius(w, i) <= level[1].radius)
             level++;
         w->bodies.cell_of[i] = level->first +
-            demi_cell_of(&p, w->cell_origin, level->size, level->cells, along,
-                         w->bodies.pos + 4*i);
+            demi_cell_of(&p, w->cell_origin, level->size, level->cells, along, w->bodies.pos + 4*i);
     }
     demi_cells_fill(w, n);
     return 1;
@@ -15362,8 +15349,7 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
         w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
     const double reach =
-        ((double)demi_radius(w, a) + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
-        slack;
+        ((double)demi_radius(w, a) + level->radius + (double)demi_cover(w))*(1 + 1e-5) + slack;
     const double slant = demi_slant(p), lean = (slant - 1)*reach;
     const demi_stretch sx = demi_level_span(w, level, 0, x, reach*slant);
     const demi_stretch sy = demi_level_span(w, level, 1, y, reach);
@@ -16324,8 +16310,7 @@ static void demi_species_coefs(const dem_world *w, const demi_species *a, const 
    there are several materials, on materials. */
 static void demi_species_vary(dem_world *w) {
     const int rows = w->effects.species_count*w->effects.species_count;
-    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL |
-        1 << DEMI_MU_SPIN;
+    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL | 1 << DEMI_MU_SPIN;
     const int own = (1 << DEMI_COEFS) - (1 << DEMI_K_UN);
     int e, k, materials = 0;
     w->species_vary = (1 << DEMI_PAIR_COLUMNS) - 1;
@@ -17205,8 +17190,7 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
                                                 demi_at(w->bodies.pos + 4*a)));
     const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
     return demi_length(x) < demi_radius(w, a) + demi_radius(w, b) +
-           (dem_real)(w->margin.reach + w->margin.slack) +
-                            (dem_real)w->margin.span*demi_length(u);
+           (dem_real)(w->margin.reach + w->margin.slack) + (dem_real)w->margin.span*demi_length(u);
 }
 /* Inserts body i, just appended, into the list. found: all bodies whose gap to it may be below the
    skin, ascending. Returns 0 if there is no room; then a rebuild is needed. It does not allocate:
@@ -17273,8 +17257,7 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     if (w->filed.stride != was->memory) w->filed.count = 0;    /* invalid: of other laws */
     if (!DEMI_GROW(w, fresh, (size_t)w->filed.count*to)) return 0;
     for (k = 0; k < w->filed.count; k++)
-        demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from,
-                        fresh + (size_t)k*to);
+        demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from, fresh + (size_t)k*to);
     demi_free(w, w->filed.memory);
     w->filed.memory = fresh;
     w->filed.stride = (int)to;
@@ -17777,8 +17760,7 @@ static void demi_places_rings(const demi_ring *ring, dem_real within, dem_real p
         if (link[i].more < 0 || link[i].more > 0)
             demi_places_add(p, link[i].place, link[i].more*(h + lost*slope), link[i].point,
                        link[i].distance*link[i].distance);
-    demi_places_add(p, ring->number, -lost*lost*slope, ring->point,
-                    ring->distance*ring->distance);
+    demi_places_add(p, ring->number, -lost*lost*slope, ring->point, ring->distance*ring->distance);
 }
 
 /* --- sieves: a sphere against a whole sieve, in the sieve's frame: z across the sheet, the middle
@@ -17838,8 +17820,7 @@ static int demi_sieve_put(demi_touching *out, int count, int32_t element, dem_ve
     return count + 1;
 }
 /* The contact with the sieve as a plate without holes. Returns 1 if there is one. */
-static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
-                           demi_touching *out) {
+static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
     const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
     out->element = DEMI_SIEVE_FACE;
     out->normal = demi_v(0, 0, -up);
@@ -18473,8 +18454,7 @@ DEM_INLINE void demi_recall(demi_tile *DEMI_RESTRICT t, int q, int at, int count
     DEMI_EIGHT(DEMI_RECALL);
     for (e = 8; e < count; e++) m[e] = t->memory[at + e][q];
 }
-DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
-                          const dem_real *m) {
+DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count, const dem_real *m) {
     int e;
     DEMI_EIGHT(DEMI_KEEP);
     for (e = 8; e < count; e++) t->memory[at + e][q] = m[e]*t->touch[q];
@@ -18857,8 +18837,7 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.usual = demi_laws_usual(w);
     r.turning = own || rolls || laws->tangent->law;
     r.parting = own || rolls;
-    r.following = own || laws->tangent->vectors || laws->rolling->vectors ||
-        w->effects.twisting;
+    r.following = own || laws->tangent->vectors || laws->rolling->vectors || w->effects.twisting;
     r.ranged = w->margin.reach > 0;
     r.same.range = w->desc.law_range;
     r.same.range_radii = w->desc.law_range_radii;
@@ -19102,8 +19081,7 @@ DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, de
 /* Computes all pairs of a work group: those inside it, then those with later groups. In a world
    with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the others.
    note: called for every tile when its forces are known, or null. */
-DEM_INLINE void demi_pairs_with(dem_world *w, int d,
-                                void (*note)(dem_world *w, int d, demi_tile *t,
+DEM_INLINE void demi_pairs_with(dem_world *w, int d, void (*note)(dem_world *w, int d, demi_tile *t,
                                              const demi_span *span, const demi_run *r)) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */
@@ -20266,6 +20244,25 @@ static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet
     out->normal = n;
     return all < range ? demi_solids_manifold(a, b, facet, range, all, n, s, out) : 0;
 }
+/* Moves the point of least gap, of `count` >= 1, to where a law with a range acts, and returns its
+   index. If other points are almost as near (an edge or a face parallel to the other body), that is
+   the mean of them all, because none of them is the nearest for good. Their weights fall from 1 to
+   0 within `band` (m) above the least gap. A point that was found twice counts once. */
+static int demi_spots_nearest(demi_d3 *x, const double *gap, int count, double band) {
+    demi_d3 sum = demi_d(0, 0, 0);
+    double all = 0;
+    int i, k, nearest = 0;
+    for (k = 1; k < count; k++) if (gap[k] < gap[nearest]) nearest = k;
+    for (k = 0; k < count; k++) {
+        const double part = 1 - (gap[k] - gap[nearest])/band;
+        for (i = 0; i < k && demi_d3_length(demi_d3_sub(x[i], x[k])) > band; i++) continue;
+        if (i < k || !(part > 0)) continue;
+        sum = demi_d3_plus(sum, part, x[k]);
+        all += part;
+    }
+    if (all > 1) x[nearest] = demi_d3_scale(sum, 1/all);
+    return nearest;
+}
 
 #endif /* DEM_NO_POLYHEDRA */
 
@@ -20377,8 +20374,7 @@ DEM_INLINE demi_places demi_places_begin(const demi_view *v, demi_touching *at) 
 DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
     const dem_real *plane = DEMI_AT(v->wall->planes, v->element[k]);
     const dem_real off = plane[0]*v->x.x + plane[1]*v->x.y + plane[2]*v->x.z - plane[3];
-    return !(v->gap[k] > v->gone) &&
-           !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
+    return !(v->gap[k] > v->gone) && !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
 /* Corrects the contact points for open rings (>>touch): those of the image at which the view is or,
    where the surface continues in others, of all images; `start` is before these. */
@@ -20565,8 +20561,7 @@ static int demi_sieve_spheres(const demi_view *v, const demi_part *part, demi_to
    farthest point) or of n.x - h (out = -1: that of the nearest), where h = sqrt(n.Q n) and n =
    (cos, sin), for the ellipse of Q's first two rows about x. n receives the direction. Newton's
    method, with steps uphill where the curvature is positive. */
-static double demi_ellipse_far(demi_sym Q, double x, double y, int out, double angle,
-                                 double *n) {
+static double demi_ellipse_far(demi_sym Q, double x, double y, int out, double angle, double *n) {
     int k;
     for (k = 0;; k++) {
         const double c = demi_cos(angle), s = demi_sin(angle);
@@ -20574,8 +20569,7 @@ static double demi_ellipse_far(demi_sym Q, double x, double y, int out, double a
         const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
         const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
         const double slope = -s*x + c*y + out*cross/h;
-        const double bend = -(c*x + s*y) +
-            out*((Q.xx + Q.yy)/h - 2*h - cross*cross/(h*h*h));
+        const double bend = -(c*x + s*y) + out*((Q.xx + Q.yy)/h - 2*h - cross*cross/(h*h*h));
         const int still = fabs(slope) < 1e-14*size;
         double step;
         n[0] = c;
@@ -21363,8 +21357,7 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
             if (!has[k]) own[owns++] = y[k];
             has[k] = 1;
         }
-        if (owns < (strip ? 2 : 3) &&
-            !demi_facet_nearest(start, v->x, own, owns, spots.normal)) {
+        if (owns < (strip ? 2 : 3) && !demi_facet_nearest(start, v->x, own, owns, spots.normal)) {
             if (spots.gap[0] < 0 || !demi_response_is(start->w, DEMI_PRESSING))
                 demi_facet_points(start, v, element, s, &f,
                                   demi_d3_dot(f.face[0].slope, f.corner[0]) > 0, gaps);
@@ -21375,8 +21368,8 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
         demi_gaps_add(gaps, element + v->base, spots.normal, spots.x[i], spots.gap[i]);
 }
 /* Writes the contact points of all groups: with impulses the four of each direction that matter;
-   for a law with a range the nearest one of each direction without pressure, four times. pressed:
-   the number of contact points before `out`. Returns the number written. */
+   for a law with a range the nearest one of each direction without pressure (demi_spots_nearest),
+   four times. pressed: the number of contact points before `out`. Returns the number written. */
 static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real *R,
                             const demi_part *part, int pressed, demi_touching *out) {
     const int pressing = demi_response_is(v->w, DEMI_PRESSING);
@@ -21388,7 +21381,8 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             demi_gap_group_pick(g);
             places = g->count;
         }
-        for (k = 1; k < g->count; k++) if (g->gap[k] < g->gap[nearest]) nearest = k;
+        if (pressing)
+            nearest = demi_spots_nearest(g->x, g->gap, g->count, 1e-3*(double)demi_part_thin(part));
         for (k = 0; k < places; k++) {
             demi_touching *t = &out[count];
             e = pressing ? nearest : k;
@@ -23079,8 +23073,7 @@ static int demi_flush_before(const demi_flush_link *l) {
     return l->way.z < 0;
 }
 static int demi_flush_ignores(const dem_world *w, int a, const demi_flush_row *o) {
-    return w->effects.ignoring &&
-        demi_ignores(w, w->bodies.material[a] - 1, o->material - 1);
+    return w->effects.ignoring && demi_ignores(w, w->bodies.material[a] - 1, o->material - 1);
 }
 /* How far from p pieces may matter, m. */
 static dem_real demi_flush_reach(const dem_world *w, const demi_part *p, const demi_flush_row *b) {
@@ -23254,8 +23247,7 @@ static void demi_flush_part(const dem_world *w, int a, const demi_part *p, const
 }
 /* Sets *out to the pressure of polyhedron p on piece j of fixed body b, and on all that belong to
    the same surface near p. Returns 0 if there is none on b. */
-static int demi_flush_pressed(const dem_world *w, const demi_flush_pair *c,
-                              demi_flush_press *out) {
+static int demi_flush_pressed(const dem_world *w, const demi_flush_pair *c, demi_flush_press *out) {
     const demi_part *p = c->part;
     int32_t found[DEMI_FLUSH_NEAR];
     dem_vec3 way[DEMI_FLUSH_NEAR];
@@ -23533,7 +23525,7 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     demi_simplex tells;
     demi_solid a, b;
     double least;
-    int k, nearest = 0;
+    int k, nearest;
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
     if (!demi_solids_spots(&a, &b, 0, range, demi_d3_of(from), &tells, spots)) return 0;
@@ -23542,7 +23534,7 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     c->arm_a = p->centre;
     c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
     if (!demi_response_is(w, DEMI_PRESSING)) return 1;
-    for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
+    nearest = demi_spots_nearest(spots->x, spots->gap, spots->count, 1e-3*DEMI_MIN(ra, rb));
     least = spots->gap[nearest];
     for (k = 0; k < 4; k++) {
         spots->x[k] = spots->x[nearest];
@@ -23562,8 +23554,7 @@ static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const d
     demi_patch at;
     double overlap;
     if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)) ||
-        !demi_flush_pressed(w, o, &press) ||
-        !demi_pressure_patch(&press.own, &o->part->q, 0, &at))
+        !demi_flush_pressed(w, o, &press) || !demi_pressure_patch(&press.own, &o->part->q, 0, &at))
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     overlap = demi_shared_overlap(press.shared, r);
     c->normal = o->first ? demi_scale(at.normal, -1) : at.normal;
@@ -24295,12 +24286,15 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
 }
 /* True if contact point `place` of part p, whose centre is at `at`, overlaps or is within the range
    of the law. Contact points of other shapes are found only within that range. For an ellipsoid the
-   gap is the distance from its surface to the point, measured on the ray from its centre. */
-static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
-                           const demi_touching *place) {
+   gap is the distance from its surface to the point, measured on the ray from its centre. For a
+   grain of a wall it is that of two ellipsoids (demi_eggs_meet), measured to the grain's centre. */
+static int demi_place_near(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                           dem_vec3 at, const demi_touching *place) {
     const dem_real scale = 1 - place->overlap;
+    const dem_real beyond = demi_wall_is(wall, DEMI_BALLS) ? wall->radius*scale : DEM_R(0);
+    const dem_vec3 to = demi_add(demi_sub(place->point, at), demi_scale(place->normal, beyond));
     return p->kind != DEMI_ELLIPSOID || place->overlap > 0 ||
-        demi_length(demi_sub(place->point, at))*(1 - 1/scale) < demi_range(w, p->radius);
+        demi_length(to)*(1 - 1/scale) < demi_range(w, p->radius);
 }
 /* Appends the contacts of part k of a body with one wall, then decides which old one each
    continues. shaped: 0 for a sphere, for which the compiler makes a specialised copy; the weights
@@ -24315,7 +24309,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
     demi_kept *fresh = 0, *c;
     int i, e, count = 0;
     for (i = 0; i < places; i++) {
-        if (shaped && w->margin.reach > 0 && !demi_place_near(w, p, at, &found[i])) continue;
+        if (shaped && w->margin.reach > 0 && !demi_place_near(w, wall, p, at, &found[i])) continue;
         c = demi_kept_new(w, d);
         if (!c) return;
         if (!count++) fresh = c;
@@ -26818,8 +26812,7 @@ static dem_vec3 demi_rod_twist(const demi_rod *r, const dem_real *p) {
     return l;
 }
 /* Applies impulses p in the rows of velocity, and an angular impulse l, to a; the opposite to b. */
-static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real *p,
-                           dem_vec3 l) {
+static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real *p, dem_vec3 l) {
     const demi_solver *s = &w->solver;
     const int shaped = w->bodies.shaped > 0;
     const dem_vec3 f = demi_at(p), back = demi_scale(f, -1);
@@ -28528,8 +28521,7 @@ static void demi_size_table_make(const dem_world *w, const dem_sizes *d, double 
         const double b = t->at[k] = k < n ? lo*demi_exp(k*ratio) : hi, a = t->at[k - 1];
         const double more = DEMI_MAX(demi_size_finer(d, lo, hi, b) - share, 0);    /* rounding */
         share += more;
-        t->number[k] = t->number[k - 1] +
-            (d->by_count ? more : more/demi_size_mass(w, (a + b)/2));
+        t->number[k] = t->number[k - 1] + (d->by_count ? more : more/demi_size_mass(w, (a + b)/2));
     }
     for (k = 0; k <= n; k++) t->number[k] /= t->number[n] > 0 ? t->number[n] : 1;
     t->number[n] = 1;
@@ -29280,8 +29272,7 @@ static dem_result demi_selection_check(dem_world *w, const char *call, const dem
     if (demi_group_check(w, call, s->group, 0) != DEM_OK ||
         (s->material.id && demi_material_index(w, call, s->material, &k) != DEM_OK) ||
         (s->shape.id && demi_shape_index(w, call, s->shape) < 0)) return DEM_ERROR_ARGUMENT;
-    if (!(s->radius_min >= 0) || !(s->radius_max >= 0) || s->count < 0 ||
-        (s->count && !s->bodies))
+    if (!(s->radius_min >= 0) || !(s->radius_max >= 0) || s->count < 0 || (s->count && !s->bodies))
         return demi_refuse(w, call, "the selection has radii from %g to %g m and %d bodies%s; "
                            "radii and count must be >= 0, and a count needs the array",
                            (double)s->radius_min, (double)s->radius_max, s->count,
@@ -29438,8 +29429,7 @@ DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_select
             v2 += v*v;
         }
         out->kinetic += m*v2/2;
-        out->rotational += (double)demi_dot(demi_angular_of(w, i),
-                                            demi_at(w->bodies.spin + 4*i))/2;
+        out->rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
     for (k = 0; k < 3 && count; k++) {
         out->centre[k] /= out->mass;
@@ -29553,8 +29543,7 @@ static double demi_feed_size(const demi_feed *f, int k, double share) {
    wall does not support. */
 static int demi_feed_strange(dem_world *w, const char *call, const dem_feed_desc *d, int k) {
     int m;
-    if (d->materials[k].id &&
-        demi_material_index(w, call, d->materials[k], &m) != DEM_OK) return 1;
+    if (d->materials[k].id && demi_material_index(w, call, d->materials[k], &m) != DEM_OK) return 1;
     if (!d->shapes[k].id) return 0;
     m = demi_shape_index(w, call, d->shapes[k]);
     return m < 0 || demi_walls_strange(w, call, m);
@@ -29731,13 +29720,11 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
         free_place = demi_feed_try(w, f, g, &x, &v) && demi_room_free(w, c, x, r);
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
-    joins = !f->desc.shapes[f->next].id &&
-        demi_join_possible(w, c->material, r);
+    joins = !f->desc.shapes[f->next].id && demi_join_possible(w, c->material, r);
     /* if it is appended, velocities may stay at the half step */
     if (!joins || !w->stage.primed) demi_finish(w);
     if (joins)
-        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*demi_cover(w), found,
-                                DEMI_FEED_NEAR);
+        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*demi_cover(w), found, DEMI_FEED_NEAR);
     joins = joins && count <= DEMI_FEED_NEAR;
     if (!demi_crowd_put(w, c, x, r, w->bodies.count) || (!joins && !demi_list_drop(w)) ||
         !demi_bodies_reserve(w, (size_t)w->bodies.count + 1) ||
@@ -29924,8 +29911,7 @@ static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
 /* True if x, in the outlet's frame, is in the box and at least `beyond` from the z axis. */
 static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
     return x.x >= d->box.lo.x && x.x <= d->box.hi.x && x.y >= d->box.lo.y && x.y <= d->box.hi.y &&
-           x.z >= d->box.lo.z && x.z <= d->box.hi.z &&
-           x.x*x.x + x.y*x.y >= d->beyond*d->beyond;
+           x.z >= d->box.lo.z && x.z <= d->box.hi.z && x.x*x.x + x.y*x.y >= d->beyond*d->beyond;
 }
 /* Transforms a position into the frame of an outlet's region. In a periodic world it uses the image
    nearest to the region's centre, or, for an unbounded region, the image in the domain. */
@@ -31891,8 +31877,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.rolling = w->booked.energy[DEMI_E_ROLL];
     l.throughput = w->booked.throughput + w->booked.inserted;
     l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force - l.cell -
-        l.inserted - l.growth + l.removed +
-                 l.normal + l.slide + l.tangent + l.rolling;
+        l.inserted - l.growth + l.removed + l.normal + l.slide + l.tangent + l.rolling;
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {
         l.unknown = l.residual;
         l.residual = 0;
@@ -35956,8 +35941,7 @@ static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
     return ((!a.id || a.id == x + 1) && (!b.id || b.id == y + 1)) ||
         ((!a.id || a.id == y + 1) && (!b.id || b.id == x + 1));
 }
-DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
-                                   dem_impacts *out) {
+DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b, dem_impacts *out) {
     int i, k;
     if (demi_null_look(w, __func__, out, "impacts")) return DEM_ERROR_ARGUMENT;
     if (demi_events_needed(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
@@ -37566,8 +37550,7 @@ static dem_result demi_layout_add(const demi_text *t, demi_layout *l, dem_grains
     return DEM_OK;
 }
 /* Fails unless there are x, y and a radius or diameter. */
-static dem_result demi_layout_check(const demi_text *t, const demi_layout *l,
-                                    const dem_grains *g) {
+static dem_result demi_layout_check(const demi_text *t, const demi_layout *l, const dem_grains *g) {
     if (l->has[0] && l->has[1] && (l->has[DEMI_COLUMN_R] || l->has[DEMI_COLUMN_D])) return DEM_OK;
     return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: columns x, y and r (radius) or d "
                      "(diameter) are needed; %s%s%s; name them in the first line, or add them to "
@@ -37896,8 +37879,7 @@ static double demi_number_of(const unsigned char *at, int size, int kind, int bi
     return kind == 'i' && bits >> 63 ? -(double)(~bits + 1) : (double)bits;
 }
 /* Reads the next number. With used = 0 it is skipped; otherwise it must be within 1e15. */
-static dem_result demi_numbers_next(const demi_text *t, demi_numbers *in, int used,
-                                    double *value) {
+static dem_result demi_numbers_next(const demi_text *t, demi_numbers *in, int used, double *value) {
     if (in->text) {
         if (!demi_text_word(in->text) && !demi_text_line(in->text))
             return demi_text_fail(in->text, "a number is expected; the file was cut short");
@@ -39507,8 +39489,7 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_id + d*w->wall_stride, walls*4);
         demi_visit(s, w->wall_element + d*w->wall_stride, walls*4);
         demi_visit(s, w->wall_gap + d*w->wall_stride, walls*sizeof(dem_real));
-        demi_visit(s, w->wall_shift + 3*(size_t)d*(size_t)w->wall_stride,
-                   3*walls*sizeof(dem_real));
+        demi_visit(s, w->wall_shift + 3*(size_t)d*(size_t)w->wall_stride, 3*walls*sizeof(dem_real));
         demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
 }
@@ -39521,15 +39502,13 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
         for (k = 0; k < domain->kept && !s->from; k++)
             demi_kept_tidy(w, demi_kept_of(w, d) + k);
         if (domain->kept)
-            demi_visit(s, demi_kept_of(w, d),
-                       (size_t)domain->kept*sizeof(demi_kept));
+            demi_visit(s, demi_kept_of(w, d), (size_t)domain->kept*sizeof(demi_kept));
     }
     if (w->stage.list_valid || !w->filed.count) return;
     demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
     demi_visit(s, w->filed.partner, (size_t)w->filed.count*4);
     demi_visit(s, w->filed.part, (size_t)w->filed.count*4);
-    demi_visit(s, w->filed.memory,
-               (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
+    demi_visit(s, w->filed.memory, (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
 }
 /* Visits poses, loads, user-defined numbers and motions of walls. Their geometry belongs to the
    scene. */
@@ -43443,8 +43422,7 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
     for (d = 0; d < DEMI_DOMAINS; d++) {
         demi_domain *o = &w->domains[d];
         if (o->kept && d)
-            memmove(to, demi_kept_of(w, d),
-                    (size_t)o->kept*sizeof *to);
+            memmove(to, demi_kept_of(w, d), (size_t)o->kept*sizeof *to);
         to += o->kept;
         o->kept = 0;
     }
@@ -43874,8 +43852,7 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
         w->bodies.ghost[w->bodies.slot[i]] = DEMI_GHOST_ABOVE;
         b->lent[n++] = (int32_t)w->bodies.slot[i];
     }
-    if (!demi_pack(w, w, w->bodies.ghost, DEMI_GHOST_ABOVE, 0, s->axis,
-                   demi_slab_shift(s, b, 1),
+    if (!demi_pack(w, w, w->bodies.ghost, DEMI_GHOST_ABOVE, 0, s->axis, demi_slab_shift(s, b, 1),
                    &b->out[1])) b->result = demi_no_memory(w, "dem_slabs_step");
     for (i = 0; i < n; i++) w->bodies.ghost[b->lent[i]] = 0;
     b->lent_count = n;
@@ -44018,8 +43995,7 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     const demi_message_head h = demi_slab_head(s, b, 0, &from);
     int i, d, ok;
     ok = demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)h.grains) &&
-         DEMI_GROW(w, b->ghost, (size_t)h.grains) &&
-         DEMI_GROW(w, b->ghost_inv, 2*(size_t)h.grains);
+         DEMI_GROW(w, b->ghost, (size_t)h.grains) && DEMI_GROW(w, b->ghost_inv, 2*(size_t)h.grains);
     if (!ok) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
     for (i = 0; i < h.grains; i++) {
         const int at = demi_grain_append(w, &from);
@@ -44163,8 +44139,7 @@ static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radi
     if (!s->head.stage.primed) demi_slabs_all(&s->head, demi_member_finish);
     for (k = 0; k < s->local; k++) {
         demi_slab *b = &s->slabs[k];
-        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, 0,
-                              demi_periods_of(&s->head)))
+        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, 0, demi_periods_of(&s->head)))
             b->result = demi_no_memory(b->world, "dem_slabs_step");
     }
     return demi_slabs_agree(&s->head, 0, 0);
@@ -44377,8 +44352,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->bodies.slot_capacity = (int)slots + 1;
     w->bodies.slot_count = (int)slots;
     if (!w->bodies.ghost || !w->bodies.slot_index || !w->bodies.slot_generation ||
-        (from->bodies.orienting && !demi_orient_begin(w)) ||
-        !demi_slab_shapes(w, from, first) ||
+        (from->bodies.orienting && !demi_orient_begin(w)) || !demi_slab_shapes(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_features(w, from, index == 0) ||
         !demi_flush_share(w, from)) return w;
     s->head.shapes = w->shapes;                 /* for the grains of feeds */

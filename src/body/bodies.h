@@ -314,8 +314,7 @@ static int demi_wall_faceted(const dem_world *w, const demi_wall *wall, int part
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
     const int gaps = kind->traits & DEMI_ONLY_GAPS ||
         (wall->sieve.kind && !demi_sieve_wires(&wall->sieve) && !(wall->sieve.thickness > 0));
-    return kind->tessellate[0] != '0' &&
-        demi_listed(demi_wall_kinds[DEMI_WALL_MESH].touch, part) &&
+    return kind->tessellate[0] != '0' && demi_listed(demi_wall_kinds[DEMI_WALL_MESH].touch, part) &&
         (!demi_listed(kind->touch, part) ||
          (part == DEMI_POLYHEDRON && gaps && demi_response_is(w, DEMI_PRESSING)));
 }
@@ -374,8 +373,7 @@ static double demi_shape_mass(const dem_world *w, int material, int shape, doubl
 /* Writes the mass, kg, of a sphere of radius `size`, m (shape -1), or of a shape of scale `size`.
    Returns 1 if the size is not positive or too large, or if dem_real cannot hold the mass, the
    moments of inertia or their inverses: accelerations would be 0 or infinite. */
-static int demi_mass_bad(const dem_world *w, int material, int shape, dem_real size,
-                         double *mass) {
+static int demi_mass_bad(const dem_world *w, int material, int shape, dem_real size, double *mass) {
     const double s = (double)size;
     double x[3];
     int k, bad = !(size > 0) ||
@@ -815,8 +813,7 @@ DEM_API dem_result dem_body_reals_set(dem_world *w, dem_body body, const dem_rea
     return DEM_OK;
 }
 DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
-    const dem_result result = demi_reals_ask(w, __func__, reals,
-                                             w ? w->bodies.count : 0, 1);
+    const dem_result result = demi_reals_ask(w, __func__, reals, w ? w->bodies.count : 0, 1);
     if (result != DEM_OK) return result;
     if (w->bodies.count)
         memcpy(w->bodies.reals, reals,

@@ -113,8 +113,7 @@ static void demi_cell_carry(dem_world *w, int begin, int end) {
         demi_put(flow, demi_scale(demi_cell_flow(w, demi_at(w->bodies.half_vel + 4*i)), back*dt));
         for (k = 0; k < 3; k++) {
             const dem_real was = x[k];
-            x[k] = (dem_real)((double)x[k] + by[k]*to[k] + (k ? 0 : shear*to[1]) -
-                              (double)flow[k]);
+            x[k] = (dem_real)((double)x[k] + by[k]*to[k] + (k ? 0 : shear*to[1]) - (double)flow[k]);
             if (w->bodies.backward) w->bodies.last_pos[4*i + k] += x[k] - was;
         }
     }

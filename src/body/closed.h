@@ -314,8 +314,7 @@ static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a,
 }
 /* Finds which shells are inside which. Returns 0 with an error message if two cross, or if one
    faces the same way as the shell around it. */
-static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c,
-                            demi_shells *s) {
+static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c, demi_shells *s) {
     demi_d3 x;
     int a, b;
     for (a = 0; a < s->count; a++)

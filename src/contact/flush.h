@@ -277,8 +277,7 @@ static int demi_flush_before(const demi_flush_link *l) {
     return l->way.z < 0;
 }
 static int demi_flush_ignores(const dem_world *w, int a, const demi_flush_row *o) {
-    return w->effects.ignoring &&
-        demi_ignores(w, w->bodies.material[a] - 1, o->material - 1);
+    return w->effects.ignoring && demi_ignores(w, w->bodies.material[a] - 1, o->material - 1);
 }
 /* How far from p pieces may matter, m. */
 static dem_real demi_flush_reach(const dem_world *w, const demi_part *p, const demi_flush_row *b) {
@@ -452,8 +451,7 @@ static void demi_flush_part(const dem_world *w, int a, const demi_part *p, const
 }
 /* Sets *out to the pressure of polyhedron p on piece j of fixed body b, and on all that belong to
    the same surface near p. Returns 0 if there is none on b. */
-static int demi_flush_pressed(const dem_world *w, const demi_flush_pair *c,
-                              demi_flush_press *out) {
+static int demi_flush_pressed(const dem_world *w, const demi_flush_pair *c, demi_flush_press *out) {
     const demi_part *p = c->part;
     int32_t found[DEMI_FLUSH_NEAR];
     dem_vec3 way[DEMI_FLUSH_NEAR];

@@ -466,3 +466,22 @@ static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet
     out->normal = n;
     return all < range ? demi_solids_manifold(a, b, facet, range, all, n, s, out) : 0;
 }
+/* Moves the point of least gap, of `count` >= 1, to where a law with a range acts, and returns its
+   index. If other points are almost as near (an edge or a face parallel to the other body), that is
+   the mean of them all, because none of them is the nearest for good. Their weights fall from 1 to
+   0 within `band` (m) above the least gap. A point that was found twice counts once. */
+static int demi_spots_nearest(demi_d3 *x, const double *gap, int count, double band) {
+    demi_d3 sum = demi_d(0, 0, 0);
+    double all = 0;
+    int i, k, nearest = 0;
+    for (k = 1; k < count; k++) if (gap[k] < gap[nearest]) nearest = k;
+    for (k = 0; k < count; k++) {
+        const double part = 1 - (gap[k] - gap[nearest])/band;
+        for (i = 0; i < k && demi_d3_length(demi_d3_sub(x[i], x[k])) > band; i++) continue;
+        if (i < k || !(part > 0)) continue;
+        sum = demi_d3_plus(sum, part, x[k]);
+        all += part;
+    }
+    if (all > 1) x[nearest] = demi_d3_scale(sum, 1/all);
+    return nearest;
+}

@@ -482,12 +482,15 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
 }
 /* True if contact point `place` of part p, whose centre is at `at`, overlaps or is within the range
    of the law. Contact points of other shapes are found only within that range. For an ellipsoid the
-   gap is the distance from its surface to the point, measured on the ray from its centre. */
-static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
-                           const demi_touching *place) {
+   gap is the distance from its surface to the point, measured on the ray from its centre. For a
+   grain of a wall it is that of two ellipsoids (demi_eggs_meet), measured to the grain's centre. */
+static int demi_place_near(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                           dem_vec3 at, const demi_touching *place) {
     const dem_real scale = 1 - place->overlap;
+    const dem_real beyond = demi_wall_is(wall, DEMI_BALLS) ? wall->radius*scale : DEM_R(0);
+    const dem_vec3 to = demi_add(demi_sub(place->point, at), demi_scale(place->normal, beyond));
     return p->kind != DEMI_ELLIPSOID || place->overlap > 0 ||
-        demi_length(demi_sub(place->point, at))*(1 - 1/scale) < demi_range(w, p->radius);
+        demi_length(to)*(1 - 1/scale) < demi_range(w, p->radius);
 }
 /* Appends the contacts of part k of a body with one wall, then decides which old one each
    continues. shaped: 0 for a sphere, for which the compiler makes a specialised copy; the weights
@@ -502,7 +505,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
     demi_kept *fresh = 0, *c;
     int i, e, count = 0;
     for (i = 0; i < places; i++) {
-        if (shaped && w->margin.reach > 0 && !demi_place_near(w, p, at, &found[i])) continue;
+        if (shaped && w->margin.reach > 0 && !demi_place_near(w, wall, p, at, &found[i])) continue;
         c = demi_kept_new(w, d);
         if (!c) return;
         if (!count++) fresh = c;

@@ -78,7 +78,7 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     demi_simplex tells;
     demi_solid a, b;
     double least;
-    int k, nearest = 0;
+    int k, nearest;
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
     if (!demi_solids_spots(&a, &b, 0, range, demi_d3_of(from), &tells, spots)) return 0;
@@ -87,7 +87,7 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
     c->arm_a = p->centre;
     c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
     if (!demi_response_is(w, DEMI_PRESSING)) return 1;
-    for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
+    nearest = demi_spots_nearest(spots->x, spots->gap, spots->count, 1e-3*DEMI_MIN(ra, rb));
     least = spots->gap[nearest];
     for (k = 0; k < 4; k++) {
         spots->x[k] = spots->x[nearest];
@@ -107,8 +107,7 @@ static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const d
     demi_patch at;
     double overlap;
     if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)) ||
-        !demi_flush_pressed(w, o, &press) ||
-        !demi_pressure_patch(&press.own, &o->part->q, 0, &at))
+        !demi_flush_pressed(w, o, &press) || !demi_pressure_patch(&press.own, &o->part->q, 0, &at))
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     overlap = demi_shared_overlap(press.shared, r);
     c->normal = o->first ? demi_scale(at.normal, -1) : at.normal;

@@ -106,8 +106,7 @@ DEM_INLINE demi_places demi_places_begin(const demi_view *v, demi_touching *at) 
 DEM_INLINE int demi_facet_near(const demi_view *v, int k, dem_real within) {
     const dem_real *plane = DEMI_AT(v->wall->planes, v->element[k]);
     const dem_real off = plane[0]*v->x.x + plane[1]*v->x.y + plane[2]*v->x.z - plane[3];
-    return !(v->gap[k] > v->gone) &&
-           !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
+    return !(v->gap[k] > v->gone) && !(DEMI_ABS(off) > within*DEM_R(1.001) + v->wall->plane_slack);
 }
 /* Corrects the contact points for open rings (>>touch): those of the image at which the view is or,
    where the surface continues in others, of all images; `start` is before these. */
@@ -294,8 +293,7 @@ static int demi_sieve_spheres(const demi_view *v, const demi_part *part, demi_to
    farthest point) or of n.x - h (out = -1: that of the nearest), where h = sqrt(n.Q n) and n =
    (cos, sin), for the ellipse of Q's first two rows about x. n receives the direction. Newton's
    method, with steps uphill where the curvature is positive. */
-static double demi_ellipse_far(demi_sym Q, double x, double y, int out, double angle,
-                                 double *n) {
+static double demi_ellipse_far(demi_sym Q, double x, double y, int out, double angle, double *n) {
     int k;
     for (k = 0;; k++) {
         const double c = demi_cos(angle), s = demi_sin(angle);
@@ -303,8 +301,7 @@ static double demi_ellipse_far(demi_sym Q, double x, double y, int out, double a
         const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
         const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
         const double slope = -s*x + c*y + out*cross/h;
-        const double bend = -(c*x + s*y) +
-            out*((Q.xx + Q.yy)/h - 2*h - cross*cross/(h*h*h));
+        const double bend = -(c*x + s*y) + out*((Q.xx + Q.yy)/h - 2*h - cross*cross/(h*h*h));
         const int still = fabs(slope) < 1e-14*size;
         double step;
         n[0] = c;

@@ -205,8 +205,7 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.usual = demi_laws_usual(w);
     r.turning = own || rolls || laws->tangent->law;
     r.parting = own || rolls;
-    r.following = own || laws->tangent->vectors || laws->rolling->vectors ||
-        w->effects.twisting;
+    r.following = own || laws->tangent->vectors || laws->rolling->vectors || w->effects.twisting;
     r.ranged = w->margin.reach > 0;
     r.same.range = w->desc.law_range;
     r.same.range_radii = w->desc.law_range_radii;
@@ -450,8 +449,7 @@ DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, de
 /* Computes all pairs of a work group: those inside it, then those with later groups. In a world
    with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the others.
    note: called for every tile when its forces are known, or null. */
-DEM_INLINE void demi_pairs_with(dem_world *w, int d,
-                                void (*note)(dem_world *w, int d, demi_tile *t,
+DEM_INLINE void demi_pairs_with(dem_world *w, int d, void (*note)(dem_world *w, int d, demi_tile *t,
                                              const demi_span *span, const demi_run *r)) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */

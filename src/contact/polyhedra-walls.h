@@ -466,8 +466,7 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
             if (!has[k]) own[owns++] = y[k];
             has[k] = 1;
         }
-        if (owns < (strip ? 2 : 3) &&
-            !demi_facet_nearest(start, v->x, own, owns, spots.normal)) {
+        if (owns < (strip ? 2 : 3) && !demi_facet_nearest(start, v->x, own, owns, spots.normal)) {
             if (spots.gap[0] < 0 || !demi_response_is(start->w, DEMI_PRESSING))
                 demi_facet_points(start, v, element, s, &f,
                                   demi_d3_dot(f.face[0].slope, f.corner[0]) > 0, gaps);
@@ -478,8 +477,8 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
         demi_gaps_add(gaps, element + v->base, spots.normal, spots.x[i], spots.gap[i]);
 }
 /* Writes the contact points of all groups: with impulses the four of each direction that matter;
-   for a law with a range the nearest one of each direction without pressure, four times. pressed:
-   the number of contact points before `out`. Returns the number written. */
+   for a law with a range the nearest one of each direction without pressure (demi_spots_nearest),
+   four times. pressed: the number of contact points before `out`. Returns the number written. */
 static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real *R,
                             const demi_part *part, int pressed, demi_touching *out) {
     const int pressing = demi_response_is(v->w, DEMI_PRESSING);
@@ -491,7 +490,8 @@ static int demi_gaps_places(const demi_view *v, demi_gaps *gaps, const dem_real 
             demi_gap_group_pick(g);
             places = g->count;
         }
-        for (k = 1; k < g->count; k++) if (g->gap[k] < g->gap[nearest]) nearest = k;
+        if (pressing)
+            nearest = demi_spots_nearest(g->x, g->gap, g->count, 1e-3*(double)demi_part_thin(part));
         for (k = 0; k < places; k++) {
             demi_touching *t = &out[count];
             e = pressing ? nearest : k;

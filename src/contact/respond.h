@@ -314,8 +314,7 @@ DEM_INLINE void demi_recall(demi_tile *DEMI_RESTRICT t, int q, int at, int count
     DEMI_EIGHT(DEMI_RECALL);
     for (e = 8; e < count; e++) m[e] = t->memory[at + e][q];
 }
-DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
-                          const dem_real *m) {
+DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count, const dem_real *m) {
     int e;
     DEMI_EIGHT(DEMI_KEEP);
     for (e = 8; e < count; e++) t->memory[at + e][q] = m[e]*t->touch[q];

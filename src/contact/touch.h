@@ -277,8 +277,7 @@ static void demi_places_rings(const demi_ring *ring, dem_real within, dem_real p
         if (link[i].more < 0 || link[i].more > 0)
             demi_places_add(p, link[i].place, link[i].more*(h + lost*slope), link[i].point,
                        link[i].distance*link[i].distance);
-    demi_places_add(p, ring->number, -lost*lost*slope, ring->point,
-                    ring->distance*ring->distance);
+    demi_places_add(p, ring->number, -lost*lost*slope, ring->point, ring->distance*ring->distance);
 }
 
 /* --- sieves: a sphere against a whole sieve, in the sieve's frame: z across the sheet, the middle
@@ -338,8 +337,7 @@ static int demi_sieve_put(demi_touching *out, int count, int32_t element, dem_ve
     return count + 1;
 }
 /* The contact with the sieve as a plate without holes. Returns 1 if there is one. */
-static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
-                           demi_touching *out) {
+static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
     const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
     out->element = DEMI_SIEVE_FACE;
     out->normal = demi_v(0, 0, -up);

@@ -60,8 +60,7 @@ static void demi_sin_cos(double x, double *sine, double *cosine) {
     const double s = r + r*u*(-1.0/6 + u*(1.0/120 + u*(-1.0/5040 + u*(1.0/362880 +
         u*(-1.0/39916800 + u*(1.0/6227020800 + u*(-1.0/1307674368000 + u/355687428096000)))))));
     const double c = 1 - u/2 + u*u*(1.0/24 + u*(-1.0/720 + u*(1.0/40320 + u*(-1.0/3628800 +
-        u*(1.0/479001600 + u*(-1.0/87178291200 + u*(1.0/20922789888000 -
-        u/6402373705728000)))))));
+        u*(1.0/479001600 + u*(-1.0/87178291200 + u*(1.0/20922789888000 - u/6402373705728000)))))));
     if (!demi_finite_double(x)) { *sine = *cosine = x - x; return; }
     *sine = quarter < 1 ? s : quarter < 2 ? c : quarter < 3 ? -s : -c;
     *cosine = quarter < 1 ? c : quarter < 2 ? -s : quarter < 3 ? -c : s;

@@ -228,8 +228,7 @@ static int demi_null_write(dem_world *w, const char *call, const void *pointer, 
 }
 /* For all others. They fail in every user-defined function except those of outputs. */
 static int demi_null(dem_world *w, const char *call, const void *pointer, const char *name) {
-    return demi_null_look(w, call, pointer, name) ||
-        (w->look.calling.who && demi_barred(w, call));
+    return demi_null_look(w, call, pointer, name) || (w->look.calling.who && demi_barred(w, call));
 }
 static const dem_material demi_no_material = {0};
 static const dem_shape demi_no_shape = {0};

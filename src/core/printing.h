@@ -78,8 +78,7 @@ static void demi_print(FILE *file, const char *format, ...) {
     va_end(args);
 }
 /* Prints to `to`, as vsnprintf and snprintf. Return the length of the whole text. */
-static int demi_words_of(char *to, size_t room, const char *format,
-                         va_list args) DEMI_FORMAT(3, 0);
+static int demi_words_of(char *to, size_t room, const char *format, va_list args) DEMI_FORMAT(3, 0);
 static int demi_words_of(char *to, size_t room, const char *format, va_list args) {
     demi_ink o = {0, to, room, 0};
     if (room) *to = 0;

@@ -108,8 +108,7 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_id + d*w->wall_stride, walls*4);
         demi_visit(s, w->wall_element + d*w->wall_stride, walls*4);
         demi_visit(s, w->wall_gap + d*w->wall_stride, walls*sizeof(dem_real));
-        demi_visit(s, w->wall_shift + 3*(size_t)d*(size_t)w->wall_stride,
-                   3*walls*sizeof(dem_real));
+        demi_visit(s, w->wall_shift + 3*(size_t)d*(size_t)w->wall_stride, 3*walls*sizeof(dem_real));
         demi_visit(s, w->wall_cell + d*w->wall_stride, walls*4);
     }
 }
@@ -122,15 +121,13 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
         for (k = 0; k < domain->kept && !s->from; k++)
             demi_kept_tidy(w, demi_kept_of(w, d) + k);
         if (domain->kept)
-            demi_visit(s, demi_kept_of(w, d),
-                       (size_t)domain->kept*sizeof(demi_kept));
+            demi_visit(s, demi_kept_of(w, d), (size_t)domain->kept*sizeof(demi_kept));
     }
     if (w->stage.list_valid || !w->filed.count) return;
     demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
     demi_visit(s, w->filed.partner, (size_t)w->filed.count*4);
     demi_visit(s, w->filed.part, (size_t)w->filed.count*4);
-    demi_visit(s, w->filed.memory,
-               (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
+    demi_visit(s, w->filed.memory, (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
 }
 /* Visits poses, loads, user-defined numbers and motions of walls. Their geometry belongs to the
    scene. */

@@ -318,8 +318,7 @@ static double demi_number_of(const unsigned char *at, int size, int kind, int bi
     return kind == 'i' && bits >> 63 ? -(double)(~bits + 1) : (double)bits;
 }
 /* Reads the next number. With used = 0 it is skipped; otherwise it must be within 1e15. */
-static dem_result demi_numbers_next(const demi_text *t, demi_numbers *in, int used,
-                                    double *value) {
+static dem_result demi_numbers_next(const demi_text *t, demi_numbers *in, int used, double *value) {
     if (in->text) {
         if (!demi_text_word(in->text) && !demi_text_line(in->text))
             return demi_text_fail(in->text, "a number is expected; the file was cut short");

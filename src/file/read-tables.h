@@ -184,8 +184,7 @@ static dem_result demi_layout_add(const demi_text *t, demi_layout *l, dem_grains
     return DEM_OK;
 }
 /* Fails unless there are x, y and a radius or diameter. */
-static dem_result demi_layout_check(const demi_text *t, const demi_layout *l,
-                                    const dem_grains *g) {
+static dem_result demi_layout_check(const demi_text *t, const demi_layout *l, const dem_grains *g) {
     if (l->has[0] && l->has[1] && (l->has[DEMI_COLUMN_R] || l->has[DEMI_COLUMN_D])) return DEM_OK;
     return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: columns x, y and r (radius) or d "
                      "(diameter) are needed; %s%s%s; name them in the first line, or add them to "

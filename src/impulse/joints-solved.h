@@ -228,8 +228,7 @@ static dem_vec3 demi_rod_twist(const demi_rod *r, const dem_real *p) {
     return l;
 }
 /* Applies impulses p in the rows of velocity, and an angular impulse l, to a; the opposite to b. */
-static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real *p,
-                           dem_vec3 l) {
+static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real *p, dem_vec3 l) {
     const demi_solver *s = &w->solver;
     const int shaped = w->bodies.shaped > 0;
     const dem_vec3 f = demi_at(p), back = demi_scale(f, -1);

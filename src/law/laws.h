@@ -125,8 +125,7 @@ static int demi_laws_keep(const dem_world *w) {
 /* True if a law in force reads r_eff or m_eff; a user-defined law may. */
 static int demi_laws_sized(const dem_world *w) {
     return w->desc.law || w->effects.twisting ||
-        ((w->laws.normal->traits | w->laws.tangent->traits |
-          w->laws.rolling->traits) & DEMI_SIZED);
+        ((w->laws.normal->traits | w->laws.tangent->traits | w->laws.rolling->traits) & DEMI_SIZED);
 }
 /* True if a law in force reads slopes of the normal force or the stiffness of mid-step. */
 static int demi_laws_precise(const dem_world *w) {

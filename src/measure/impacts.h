@@ -11,8 +11,7 @@ static int demi_impacts_fit(int x, int y, dem_material a, dem_material b) {
     return ((!a.id || a.id == x + 1) && (!b.id || b.id == y + 1)) ||
         ((!a.id || a.id == y + 1) && (!b.id || b.id == x + 1));
 }
-DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b,
-                                   dem_impacts *out) {
+DEM_API dem_result dem_impacts_get(dem_world *w, dem_material a, dem_material b, dem_impacts *out) {
     int i, k;
     if (demi_null_look(w, __func__, out, "impacts")) return DEM_ERROR_ARGUMENT;
     if (demi_events_needed(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;

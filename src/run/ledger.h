@@ -82,8 +82,7 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.rolling = w->booked.energy[DEMI_E_ROLL];
     l.throughput = w->booked.throughput + w->booked.inserted;
     l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force - l.cell -
-        l.inserted - l.growth + l.removed +
-                 l.normal + l.slide + l.tangent + l.rolling;
+        l.inserted - l.growth + l.removed + l.normal + l.slide + l.tangent + l.rolling;
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {
         l.unknown = l.residual;
         l.residual = 0;

@@ -99,8 +99,7 @@ static double demi_feed_size(const demi_feed *f, int k, double share) {
    wall does not support. */
 static int demi_feed_strange(dem_world *w, const char *call, const dem_feed_desc *d, int k) {
     int m;
-    if (d->materials[k].id &&
-        demi_material_index(w, call, d->materials[k], &m) != DEM_OK) return 1;
+    if (d->materials[k].id && demi_material_index(w, call, d->materials[k], &m) != DEM_OK) return 1;
     if (!d->shapes[k].id) return 0;
     m = demi_shape_index(w, call, d->shapes[k]);
     return m < 0 || demi_walls_strange(w, call, m);
@@ -277,13 +276,11 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
         free_place = demi_feed_try(w, f, g, &x, &v) && demi_room_free(w, c, x, r);
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
-    joins = !f->desc.shapes[f->next].id &&
-        demi_join_possible(w, c->material, r);
+    joins = !f->desc.shapes[f->next].id && demi_join_possible(w, c->material, r);
     /* if it is appended, velocities may stay at the half step */
     if (!joins || !w->stage.primed) demi_finish(w);
     if (joins)
-        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*demi_cover(w), found,
-                                DEMI_FEED_NEAR);
+        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*demi_cover(w), found, DEMI_FEED_NEAR);
     joins = joins && count <= DEMI_FEED_NEAR;
     if (!demi_crowd_put(w, c, x, r, w->bodies.count) || (!joins && !demi_list_drop(w)) ||
         !demi_bodies_reserve(w, (size_t)w->bodies.count + 1) ||
@@ -470,8 +467,7 @@ static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
 /* True if x, in the outlet's frame, is in the box and at least `beyond` from the z axis. */
 static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
     return x.x >= d->box.lo.x && x.x <= d->box.hi.x && x.y >= d->box.lo.y && x.y <= d->box.hi.y &&
-           x.z >= d->box.lo.z && x.z <= d->box.hi.z &&
-           x.x*x.x + x.y*x.y >= d->beyond*d->beyond;
+           x.z >= d->box.lo.z && x.z <= d->box.hi.z && x.x*x.x + x.y*x.y >= d->beyond*d->beyond;
 }
 /* Transforms a position into the frame of an outlet's region. In a periodic world it uses the image
    nearest to the region's centre, or, for an unbounded region, the image in the domain. */

@@ -50,8 +50,7 @@ static dem_result demi_selection_check(dem_world *w, const char *call, const dem
     if (demi_group_check(w, call, s->group, 0) != DEM_OK ||
         (s->material.id && demi_material_index(w, call, s->material, &k) != DEM_OK) ||
         (s->shape.id && demi_shape_index(w, call, s->shape) < 0)) return DEM_ERROR_ARGUMENT;
-    if (!(s->radius_min >= 0) || !(s->radius_max >= 0) || s->count < 0 ||
-        (s->count && !s->bodies))
+    if (!(s->radius_min >= 0) || !(s->radius_max >= 0) || s->count < 0 || (s->count && !s->bodies))
         return demi_refuse(w, call, "the selection has radii from %g to %g m and %d bodies%s; "
                            "radii and count must be >= 0, and a count needs the array",
                            (double)s->radius_min, (double)s->radius_max, s->count,
@@ -208,8 +207,7 @@ DEM_API dem_result dem_bodies_means_get(const dem_world *world, const dem_select
             v2 += v*v;
         }
         out->kinetic += m*v2/2;
-        out->rotational += (double)demi_dot(demi_angular_of(w, i),
-                                            demi_at(w->bodies.spin + 4*i))/2;
+        out->rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
     for (k = 0; k < 3 && count; k++) {
         out->centre[k] /= out->mass;

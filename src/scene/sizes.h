@@ -153,8 +153,7 @@ static void demi_size_table_make(const dem_world *w, const dem_sizes *d, double 
         const double b = t->at[k] = k < n ? lo*demi_exp(k*ratio) : hi, a = t->at[k - 1];
         const double more = DEMI_MAX(demi_size_finer(d, lo, hi, b) - share, 0);    /* rounding */
         share += more;
-        t->number[k] = t->number[k - 1] +
-            (d->by_count ? more : more/demi_size_mass(w, (a + b)/2));
+        t->number[k] = t->number[k - 1] + (d->by_count ? more : more/demi_size_mass(w, (a + b)/2));
     }
     for (k = 0; k <= n; k++) t->number[k] /= t->number[n] > 0 ? t->number[n] : 1;
     t->number[n] = 1;

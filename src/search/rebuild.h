@@ -263,8 +263,7 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
                                                 demi_at(w->bodies.pos + 4*a)));
     const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
     return demi_length(x) < demi_radius(w, a) + demi_radius(w, b) +
-           (dem_real)(w->margin.reach + w->margin.slack) +
-                            (dem_real)w->margin.span*demi_length(u);
+           (dem_real)(w->margin.reach + w->margin.slack) + (dem_real)w->margin.span*demi_length(u);
 }
 /* Inserts body i, just appended, into the list. found: all bodies whose gap to it may be below the
    skin, ascending. Returns 0 if there is no room; then a rebuild is needed. It does not allocate:
@@ -331,8 +330,7 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     if (w->filed.stride != was->memory) w->filed.count = 0;    /* invalid: of other laws */
     if (!DEMI_GROW(w, fresh, (size_t)w->filed.count*to)) return 0;
     for (k = 0; k < w->filed.count; k++)
-        demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from,
-                        fresh + (size_t)k*to);
+        demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from, fresh + (size_t)k*to);
     demi_free(w, w->filed.memory);
     w->filed.memory = fresh;
     w->filed.stride = (int)to;

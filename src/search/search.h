@@ -408,8 +408,7 @@ static int demi_levels_lay(dem_world *w) {
                (double)demi_radius(w, i) <= level[1].radius)
             level++;
         w->bodies.cell_of[i] = level->first +
-            demi_cell_of(&p, w->cell_origin, level->size, level->cells, along,
-                         w->bodies.pos + 4*i);
+            demi_cell_of(&p, w->cell_origin, level->size, level->cells, along, w->bodies.pos + 4*i);
     }
     demi_cells_fill(w, n);
     return 1;
@@ -462,8 +461,7 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
         w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
     const double reach =
-        ((double)demi_radius(w, a) + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
-        slack;
+        ((double)demi_radius(w, a) + level->radius + (double)demi_cover(w))*(1 + 1e-5) + slack;
     const double slant = demi_slant(p), lean = (slant - 1)*reach;
     const demi_stretch sx = demi_level_span(w, level, 0, x, reach*slant);
     const demi_stretch sy = demi_level_span(w, level, 1, y, reach);

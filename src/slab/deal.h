@@ -108,8 +108,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->bodies.slot_capacity = (int)slots + 1;
     w->bodies.slot_count = (int)slots;
     if (!w->bodies.ghost || !w->bodies.slot_index || !w->bodies.slot_generation ||
-        (from->bodies.orienting && !demi_orient_begin(w)) ||
-        !demi_slab_shapes(w, from, first) ||
+        (from->bodies.orienting && !demi_orient_begin(w)) || !demi_slab_shapes(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_features(w, from, index == 0) ||
         !demi_flush_share(w, from)) return w;
     s->head.shapes = w->shapes;                 /* for the grains of feeds */

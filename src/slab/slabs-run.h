@@ -22,8 +22,7 @@ static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radi
     if (!s->head.stage.primed) demi_slabs_all(&s->head, demi_member_finish);
     for (k = 0; k < s->local; k++) {
         demi_slab *b = &s->slabs[k];
-        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, 0,
-                              demi_periods_of(&s->head)))
+        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, 0, demi_periods_of(&s->head)))
             b->result = demi_no_memory(b->world, "dem_slabs_step");
     }
     return demi_slabs_agree(&s->head, 0, 0);

@@ -374,8 +374,7 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
         w->bodies.ghost[w->bodies.slot[i]] = DEMI_GHOST_ABOVE;
         b->lent[n++] = (int32_t)w->bodies.slot[i];
     }
-    if (!demi_pack(w, w, w->bodies.ghost, DEMI_GHOST_ABOVE, 0, s->axis,
-                   demi_slab_shift(s, b, 1),
+    if (!demi_pack(w, w, w->bodies.ghost, DEMI_GHOST_ABOVE, 0, s->axis, demi_slab_shift(s, b, 1),
                    &b->out[1])) b->result = demi_no_memory(w, "dem_slabs_step");
     for (i = 0; i < n; i++) w->bodies.ghost[b->lent[i]] = 0;
     b->lent_count = n;
@@ -518,8 +517,7 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     const demi_message_head h = demi_slab_head(s, b, 0, &from);
     int i, d, ok;
     ok = demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)h.grains) &&
-         DEMI_GROW(w, b->ghost, (size_t)h.grains) &&
-         DEMI_GROW(w, b->ghost_inv, 2*(size_t)h.grains);
+         DEMI_GROW(w, b->ghost, (size_t)h.grains) && DEMI_GROW(w, b->ghost_inv, 2*(size_t)h.grains);
     if (!ok) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
     for (i = 0; i < h.grains; i++) {
         const int at = demi_grain_append(w, &from);

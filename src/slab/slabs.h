@@ -255,8 +255,7 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
     for (d = 0; d < DEMI_DOMAINS; d++) {
         demi_domain *o = &w->domains[d];
         if (o->kept && d)
-            memmove(to, demi_kept_of(w, d),
-                    (size_t)o->kept*sizeof *to);
+            memmove(to, demi_kept_of(w, d), (size_t)o->kept*sizeof *to);
         to += o->kept;
         o->kept = 0;
     }

@@ -369,8 +369,7 @@ static void demi_join_part_shells(demi_join *j, const int32_t *part, double *bou
             const int f = j->side[k].facet, own = part[f];
             for (m = i; m < k && part[j->side[m].facet] != own; m++) continue;
             if (m == k && own >= 0 && !(j->mark[f] & DEMI_JOIN_OPEN))
-                demi_join_around(j, j->side + i, end - i, part, own,
-                                 bounds[j->facet[5*f + 4]] < 0);
+                demi_join_around(j, j->side + i, end - i, part, own, bounds[j->facet[5*f + 4]] < 0);
         }
     }
     for (i = 0; i < j->facets; i++)
@@ -647,8 +646,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
             if (other == i || (other > i && !closed)) continue;
             for (k = 0; k < 3; k++)
                 if (fabs(middle[3*other + k] - at[k]) > half[3*other + k] + size[k] + tiny) break;
-            if (k < 3 ||
-                demi_shard_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
+            if (k < 3 || demi_shard_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
             t = demi_shard_of(j, other);
             if (other > i && demi_d3_dot(demi_shard_normal(&t), demi_shard_normal(&own)) > 0)
                 continue;

@@ -552,8 +552,7 @@ DEM_API dem_wall dem_wall_profile_add(dem_world *w, dem_material material,
         return none;
     }
     wall.rule = rule;
-    if (!demi_wall_load(w, __func__, &wall, profile->vertex_count, profile->vertices,
-                        2,
+    if (!demi_wall_load(w, __func__, &wall, profile->vertex_count, profile->vertices, 2,
                         profile->segment_count, profile->segments, 2)) return none;
     wall.motion.axis = demi_v(0, 0, 1);
     return demi_wall_adopt(w, __func__, &wall);
@@ -749,8 +748,7 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
         return demi_refuse(w, "dem_wall_motion_set", "wall %d would jump by %.3g m (amplitude "
                            "sin(phase)) as its oscillation begins, must be 0 after the first step: "
                            "it would throw the grains in its way; set motion.ramp, or phase 0",
-                           (int)id.id, (double)motion->amplitude*
-                           demi_sin((double)motion->phase));
+                           (int)id.id, (double)motion->amplitude* demi_sin((double)motion->phase));
     if (motion->kind == DEM_MOTION_USER && !motion->function)
         return demi_refuse(w, "dem_wall_motion_set", "wall %d has kind DEM_MOTION_USER and no "
                            "function; set motion.function", (int)id.id);

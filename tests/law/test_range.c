@@ -388,10 +388,10 @@ int main(int argc, char **argv) {
             CHECK_NEAR(let_go(other, -0.7, -1), rupture, 1.5e-7);
         }
     }
-    TEST("a law with a range sees two ellipsoids as soon as their contact points are within the range") {
+    TEST("a law with a range sees two ellipsoids, or one and a grain of a wall, as soon as they are within the range") {
         uint64_t seed = 5;
-        int i, listed = 0, not_listed = 0;
-        for (i = 0; i < 1500; i++) {
+        int i, wall, listed[2] = {0, 0}, not_listed[2] = {0, 0};
+        for (i = 0; i < 3000; i++) {
             dem_world_desc desc = desc_of(look, 2e-4, 0);
             dem_world *w;
             dem_material m;
@@ -400,24 +400,66 @@ int main(int argc, char **argv) {
             dem_ellipsoid_contact c;
             dem_contact_info one;
             double gap;
+            wall = i%2;
             desc.dt = DEM_R(1e-6);
             w = dem_world_create(&desc);
             m = scene_material(w, 1e7, 1, 0, 0);
             p.semi_axes = q.semi_axes = axes;
+            if (wall) p.semi_axes = at(0.6e-3, 0.6e-3, 0.6e-3);
             q.position = scene_at(&seed, 2.4e-3, -1.2e-3, 2.4e-3, -1.2e-3, 1.6e-3, -0.8e-3);
             q.orientation = dem_quat_make(1, (dem_real)scene_random(&seed), (dem_real)scene_random(&seed), 0);
             c = dem_ellipsoids_contact_get(&p, &q, 0);
             gap = (double)demi_length(q.position)*(1 - 1/(double)c.scale);
-            dem_body_add(w, m, dem_shape_ellipsoid_add(w, axes), p.position, p.orientation);
+            if (wall) dem_wall_grains_add(w, m, 1, &p.position.x, p.semi_axes.x, 1);
+            else dem_body_add(w, m, dem_shape_ellipsoid_add(w, axes), p.position, p.orientation);
             dem_body_add(w, m, dem_shape_ellipsoid_add(w, axes), q.position, q.orientation);
             if (fabs(gap - 2e-4) > 1e-7 && gap > -5e-5) {      /* not on the edge; not too deep */
                 CHECK_EQ(scene_step(w, 1), DEM_OK);            /* nothing pushes, nothing moves */
                 CHECK_EQ(dem_contacts_get(w, &one, 1), gap < 2e-4);
-                if (gap < 2e-4) listed++; else not_listed++;
+                if (gap < 2e-4) listed[wall]++; else not_listed[wall]++;
             }
             dem_world_destroy(w);
         }
-        CHECK(listed > 100 && not_listed > 100);
+        for (wall = 0; wall < 2; wall++) CHECK(listed[wall] > 100 && not_listed[wall] > 100);
+    }
+    TEST("across a gap a law acts at the middle of an edge or a face that is parallel to a wall or to another body") {
+        const double tilts[] = {0, 1e-4, 1e-2};         /* rad */
+        int kind, below, i;
+        for (kind = 0; kind < 6; kind++) {      /* shape: the edge of a tetrahedron, the face of a box; on what */
+            double arm[3];
+            below = kind/2;
+            for (i = 0; i < 3; i++) {
+                dem_world_desc desc = desc_of(shell, g, 0);
+                dem_sieve_desc s = DEM_SIEVE_DESC;
+                dem_real four[12] = {-1e-3f, 0, 0, 1e-3f, 0, 0, 0, -1e-3f, DEM_R(1.4e-3), 0, 1e-3f, DEM_R(1.4e-3)};
+                const double half = tilts[i]/2;
+                dem_shape shape;
+                dem_material m;
+                dem_world *w;
+                desc.dt = DEM_R(1e-7);
+                w = dem_world_create(&desc);
+                m = scene_material(w, 1e7, 1, 0, 0);
+                shape = kind%2 ? scene_box(w, 1e-3, 1e-3, 1e-3) : dem_shape_polyhedron_add(w, 4, four);
+                s.kind = DEM_SIEVE_SQUARE;
+                s.aperture = DEM_R(1e-2);
+                s.bar = DEM_R(1e-2);
+                s.thickness = DEM_R(1e-3);
+                if (below == 0) dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+                if (below == 1) dem_wall_sieve_add(w, m, &s);     /* its top: half its thickness higher */
+                if (below == 2) {
+                    dem_body_add(w, m, scene_box(w, 5e-3, 5e-3, 1e-3), at(0, 0, -5e-4), dem_quat_make(1, 0, 0, 0));
+                    dem_bodies_fixed_set(w, 0, 1);
+                }
+                dem_body_add(w, m, shape, at(below == 1 ? 0.01 : 0, 0, (kind%2 ? 0.7e-3 : 0.9e-3) + (below == 1 ? 5e-4 : 0)),
+                             dem_quat_make(1, 0, DEM_R(half), 0));
+                CHECK_EQ(scene_step(w, 1), DEM_OK);
+                arm[i] = (double)w->bodies.torque[4*(below == 2) + 1]/(double)w->bodies.force[4*(below == 2) + 2];
+                dem_world_destroy(w);
+            }
+            CHECK_NEAR(arm[0], 0, DEMI_SINGLE ? 1e-7 : 1e-12);
+            CHECK(arm[1] < -2e-5 && arm[1] > -4e-4);           /* on the way from the middle to one end */
+            CHECK_NEAR(arm[2], kind%2 ? -5e-4 : -1e-3, 1e-5);
+        }
     }
     TEST("a law with law_who receives ids, radii, masses, position and time") {
         dem_world_desc desc = desc_of(look, 0, 0);
