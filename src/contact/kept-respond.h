@@ -10,8 +10,7 @@
 
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
    the square root of m_eff (`root`). */
-static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out,
-                            dem_real *root) {
+static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out, dem_real *root) {
     const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
     const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
     /* here a grain of a wall has mass */
@@ -21,8 +20,7 @@ static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *ou
     const double give = shaped ? demi_body_give_at_most(w, k->a) +
         (k->b >= 0 ? demi_body_give_at_most(w, k->b) : 0) : 0;
     demi_coefficients_rooted(w, w->bodies.material[k->a] - 1,
-                             wall ? wall->material : w->bodies.material[k->b] - 1,
-                             (double)k->r_eff,
+                             wall ? wall->material : w->bodies.material[k->b] - 1, (double)k->r_eff,
                              half*(shaped ? 1/give : (double)w->bodies.mass[k->a]),
                              wall && !grains, out, root);
     root[0] *= (dem_real)sqrt(half);
@@ -465,8 +463,7 @@ static void demi_kept_energy(const dem_world *w, const demi_kept_tile *t, int q,
     const dem_real late = !w->bodies.booked ? 0
         : demi_late_share(demi_late_of(w, c->a, c->b), c->normal, rows->closing[q]);
     /* V = k overlap^2/2; the law was given k slope */
-    energy[DEMI_E_DASHPOT] = (double)(share*(rows->part[0][q]*(1 + late) +
-                                             rows->part[6][q]/slope));
+    energy[DEMI_E_DASHPOT] = (double)(share*(rows->part[0][q]*(1 + late) + rows->part[6][q]/slope));
     energy[DEMI_E_ELASTIC] = (double)(share*(rows->part[1][q]/slope));
     energy[DEMI_E_SHEAR_WORK] = (double)(grip*rows->part[2][q]);
     energy[DEMI_E_SLIDE] = (double)(grip*rows->part[3][q]);

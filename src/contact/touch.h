@@ -208,22 +208,40 @@ static void demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_
     }
     ring->facets++;
 }
+/* Orders links by `more`, then as above. */
+static int demi_link_along(const void *x, const void *y) {
+    const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
+    if (a->more < b->more) return -1;
+    return a->more > b->more ? 1 : demi_link_compare(x, y);
+}
 /* Gives a side or corner that several images of the surface share, where one continues the other,
-   the number that it has in the first of them. numbers: those of one image. */
+   the number that it has in the first of them. numbers: those of one image. Links in one place are
+   found next to each other in the order of a coordinate in which few others agree. */
 static void demi_links_share(demi_ring *ring, int numbers, dem_real near_by) {
     demi_link *link = ring->link;
-    int i, k, s;
+    int i, k, s, way;
+    for (i = 0; i < ring->links; i++)
+        link[i].more = demi_dot(link[i].middle, demi_v(1, DEM_R(0.618034), DEM_R(0.236068)));
+    qsort(link, (size_t)ring->links, sizeof *link, demi_link_along);
     for (i = 0; i < ring->links; i++) {
-        const int32_t was = link[i].number, image = link[i].place/numbers;
-        for (k = 0; k < i && link[k].place/numbers < image; k++) {
-            const dem_vec3 d = demi_sub(link[k].middle, link[i].middle);
-            if (link[k].corner == link[i].corner && demi_dot(d, d) <= near_by*near_by) break;
-        }
-        if (k == i || link[k].place/numbers == image) continue;
-        link[i].number = link[k].number;
+        int first = i;
+        for (way = -1; way < 2; way += 2)
+            for (k = i + way; k >= 0 && k < ring->links &&
+                 DEMI_ABS(link[k].more - link[i].more) < 2*near_by; k += way) {
+                const dem_vec3 d = demi_sub(link[k].middle, link[i].middle);
+                if (link[k].corner == link[i].corner && demi_dot(d, d) <= near_by*near_by &&
+                    link[k].place/numbers < link[first].place/numbers) first = k;
+            }
+        link[i].root = link[first].number;
+    }
+    for (i = 0; i < ring->links; i++) link[i].more = (dem_real)link[i].facet;
+    qsort(link, (size_t)ring->links, sizeof *link, demi_link_along);
+    for (i = 0; i < ring->links; i++) {
+        const int32_t was = link[i].number, now = link[i].root;
         for (k = DEMI_MAX(i - 5, 0); k < ring->links && k < i + 6; k++)    /* a facet has six */
-            for (s = 0; s < 2 && link[k].facet == link[i].facet; s++)
-                if (link[k].sides[s] == was) link[k].sides[s] = link[i].number;
+            for (s = 0; s < 2 && link[k].facet == link[i].facet && now != was; s++)
+                if (link[k].sides[s] == was) link[k].sides[s] = now;
+        link[i].number = now;
     }
 }
 /* Returns the weight of a corner in chi, from the facets at it (links first .. end - 1): 1 + facets

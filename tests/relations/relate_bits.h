@@ -210,7 +210,7 @@ static int rel_zero_growth(const rel_case *c, rel_scene *s, int on) {
     return rel_zero_world(s, "growth", rel_code_of("no_growth"), on);
 }
 static int rel_zero_numbers(const rel_case *c, rel_scene *s, int on) {
-    (void)c;
+    if (rel_has(c, "charge") || rel_has(c, "heat")) return 0;      /* laws that read them */
     rel_leave_field(s, REL_WORLD, "body_reals_fn");
     return rel_zero_world(s, "body_reals", 0, on);
 }

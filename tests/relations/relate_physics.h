@@ -298,7 +298,8 @@ static int rel_energy(rel_case *c) {
     double share;
     with.ledger = 1;
     if (!rel_books(c, &other, &with, &share)) return REL_SKIPPED;
-    for (k = 0; k < other.marks && result == REL_HOLDS; k++) {
+    /* "what springs held on a grain that an outlet or an outflow boundary removes" is in the residual (dem_ledger) */
+    for (k = 0; k < other.marks && result == REL_HOLDS && !(rel_leaves(c) && other.mark[k].left); k++) {
         const dem_ledger *l = &other.mark[k].ledger;
         const double all = rel_energy_of(l);
         c->allowed[0] = share*all;
