@@ -2820,7 +2820,8 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
        DEM_ERROR_UNSTABLE   a position, velocity, force or number of a body is not finite, two
                             bodies overlap by the smaller radius, a body and a wall by that of the
                             body, or a motion or desc.growth returns impossible values
-       DEM_ERROR_FILE, DEM_ERROR_FORMAT    an output cannot be written; its CSV has other columns
+       DEM_ERROR_FILE, DEM_ERROR_FORMAT    an output cannot be written; its CSV has other columns.
+                            The next call writes it, also one of 0 steps.
        DEM_ERROR_STOPPED    an output stopped the run; desc.unsolved_stops is 1 and the sweeps of a
                             step did not reach the tolerance; or an overlap is above
                             desc.overlap_stop. The step is complete.
@@ -34586,7 +34587,7 @@ static dem_result demi_step_ready(dem_world *h) {
    the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     /* not in the middle of a step: what is due there is written when the step is complete */
-    int i, looks = steps && !h->stage.moved;
+    int i, looks = (steps || h->clock.steps) && !h->stage.moved;
     dem_result result = looks && h->look.outputs_look ? demi_dt_settle(h) : DEM_OK;
     if (looks && result == DEM_OK) result = demi_look(h);
     for (i = 0; i < steps && result == DEM_OK; i++) {

@@ -81,7 +81,8 @@ DEM_API int dem_world_check_print(dem_world *world, FILE *out);
        DEM_ERROR_UNSTABLE   a position, velocity, force or number of a body is not finite, two
                             bodies overlap by the smaller radius, a body and a wall by that of the
                             body, or a motion or desc.growth returns impossible values
-       DEM_ERROR_FILE, DEM_ERROR_FORMAT    an output cannot be written; its CSV has other columns
+       DEM_ERROR_FILE, DEM_ERROR_FORMAT    an output cannot be written; its CSV has other columns.
+                            The next call writes it, also one of 0 steps.
        DEM_ERROR_STOPPED    an output stopped the run; desc.unsolved_stops is 1 and the sweeps of a
                             step did not reach the tolerance; or an overlap is above
                             desc.overlap_stop. The step is complete.

@@ -859,7 +859,7 @@ static dem_result demi_step_ready(dem_world *h) {
    the public function in messages. */
 static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     /* not in the middle of a step: what is due there is written when the step is complete */
-    int i, looks = steps && !h->stage.moved;
+    int i, looks = (steps || h->clock.steps) && !h->stage.moved;
     dem_result result = looks && h->look.outputs_look ? demi_dt_settle(h) : DEM_OK;
     if (looks && result == DEM_OK) result = demi_look(h);
     for (i = 0; i < steps && result == DEM_OK; i++) {

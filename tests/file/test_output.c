@@ -113,9 +113,19 @@ static int blow(dem_world *world, int64_t number, void *user) {
     s.velocity.x += DEM_R(0.1);
     return dem_body_set(world, b, &s) != DEM_OK;
 }
+static int refusing;                            /* 1: lone() gets no memory */
+static void *alloc_lone(size_t size, void *user) { (void)user; return refusing ? 0 : malloc(size); }
+static void free_lone(void *memory, size_t size, void *user) { (void)size; (void)user; free(memory); }
+static int refuse_at_2(dem_world *world, int64_t count, void *user) {
+    (void)world; (void)user;
+    refusing = count == 2;
+    return 0;
+}
 static dem_world *lone(void) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
+    desc.allocator.alloc_fn = alloc_lone;
+    desc.allocator.free_fn = free_lone;
     desc.dt = DEM_R(1e-5);
     desc.threads = 1;
     world = dem_world_create(&desc);
@@ -423,6 +433,23 @@ int main(int argc, char **argv) {
             CHECK_EQ(dem_world_steps_get(world), 0);
             dem_world_destroy(world);
         }
+    }
+    TEST("an output that fails at the end of a run is written by the next call, also by one of 0 steps") {
+        dem_world *world = lone();
+        size_t n;
+        char *text;
+        every(world, 1e-3, refuse_at_2, 0);
+        remove("build/tmp/output_late_0002.vtp");
+        CHECK(dem_output_every_add(world, DEM_OUTPUT_VTP, "build/tmp/output_late_####.vtp", 1e-3).id == 2);
+        CHECK_EQ(dem_world_step(world, 0), DEM_OK);            /* nothing is due before the first step */
+        CHECK_EQ(dem_world_step(world, 200), DEM_ERROR_MEMORY);
+        CHECK_EQ(dem_world_steps_get(world), 200);
+        refusing = 0;
+        CHECK_EQ(dem_world_step(world, 0), DEM_OK);
+        text = file_text("late_0002", ".vtp", &n);
+        CHECK(text && n > 0);
+        free(text);
+        dem_world_destroy(world);
     }
     TEST("an interval too short for its time or its count is rejected") {
         dem_world *world = lone();

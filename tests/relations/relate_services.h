@@ -119,8 +119,9 @@ static int rel_other_than_spheres(const rel_scene *s) {
     return 0;
 }
 static int rel_grains_filed(rel_case *c) {
+    static const char *const shaped[] = {"feed of shapes", "fill of shapes", 0};
     int k;
-    if (!c->ran || rel_other_than_spheres(c->s)) return REL_SKIPPED;
+    if (!c->ran || rel_other_than_spheres(c->s) || rel_has_any(c, shaped)) return REL_SKIPPED;
     for (k = 0; k < 4; k++)
         if (!grains_back(c->base.w, k)) {
             c->bad = k;
