@@ -6,7 +6,7 @@
 # positions, on which many rooms work. An inline function counts for the room that defines it. Macros and functions
 # that get the address of a field, such as DEMI_GROW and memset, do not count. Prints these fields with their rooms, and
 # ends with code 1 if there are more than `cap`.
-BEGIN { cap = 15; most = 3; assigned = "( *([-+*/|&^]|<<|>>)?=[^=]|\\+\\+|--)" }
+BEGIN { cap = 4; most = 3; assigned = "( *([-+*/|&^]|<<|>>)?=[^=]|\\+\\+|--)" }
 /^#include "/ { split($0, part, "\""); if (part[2] !~ /^api\//) room[++rooms] = part[2] }
 END {
     path = FILENAME; sub(/[^\/]*$/, "", path)

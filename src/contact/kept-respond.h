@@ -10,8 +10,7 @@
 
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
    the square root of m_eff (`root`). */
-static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out,
-                            dem_real *root) {
+static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out, dem_real *root) {
     const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
     const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
     /* here a grain of a wall has mass */
