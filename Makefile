@@ -210,10 +210,12 @@ readers: build/write_files ### write every file format and open it with VTK and 
 	@$(PYTHON) tests/read_vtk.py build/out/readers
 	@$(PYTHON) tests/read_xyz.py build/out/readers
 
-tags: ### check that dem.h is joined from src/, that its parts agree with its contents, that parts, functions and lines keep their limits, that volume I names nothing of volume II, that calls of user-defined functions are marked, and that relations call every public function
+tags: ### check that dem.h is joined from src/, that its parts agree with its contents, that parts, functions and lines keep their limits, that volume I names nothing of volume II, that few fields have many writers, that few lines name a feature outside its files, that calls of user-defined functions are marked, and that relations call every public function
 	@awk -f src/join.awk src/dem.h | cmp - dem.h
 	@awk -f tests/tags.awk dem.h
-	@awk -f tests/storeys.awk src/dem.h
+	@awk -f tests/plain.awk -f tests/storeys.awk src/dem.h
+	@awk -f tests/plain.awk -f tests/writers.awk src/dem.h
+	@awk -f tests/plain.awk -f tests/features.awk src/dem.h
 	@awk -f tests/calls.awk dem.h
 	@awk -f tests/relations/called.awk dem.h tests/relations/*.h tests/relations/relations.c
 	@awk -f tests/relations/fields.awk tests/relations/fields.txt dem.h tests/relations/calls.h

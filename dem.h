@@ -5579,6 +5579,33 @@ DEM_INLINE void demi_called(const dem_world *w, demi_calling was) {
 /* In a function that stands in for one of the user's, and that DEMI_USER calls. */
 #define DEMI_USER_WITHIN(call) call
 
+/* Mark what a change of the scene makes invalid; the next step makes it again (demi_stages). Lists:
+   demi_list_drop does so, once it has filed the contact histories; the head of a team follows its
+   members. Half-step velocities: the time step or velocities change. Forces, and therefore
+   half-step velocities: something else acts on bodies. Facets: a wall comes, goes or moves
+   otherwise (demi_surfaces_outdated). Linked linear list: a body comes or goes. Time step: bodies,
+   materials or speeds change. */
+DEM_INLINE void demi_list_outdated(dem_world *w) { w->stage.list_valid = 0; }
+DEM_INLINE void demi_halves_outdated(dem_world *w) { w->stage.primed = 0; }
+DEM_INLINE void demi_forces_outdated(dem_world *w) { w->stage.forces_valid = w->stage.primed = 0; }
+DEM_INLINE void demi_facets_outdated(dem_world *w) { w->facets_valid = 0; }
+DEM_INLINE void demi_lll_outdated(dem_world *w) { w->lll_valid = 0; }
+DEM_INLINE void demi_dt_outdated(dem_world *w) { w->stage.dt_valid = 0; }
+/* Called when the time step suits the scene. >>advice looks for pressed bodies from here on. */
+DEM_INLINE void demi_dt_settled(dem_world *w) {
+    w->clock.press_since = w->clock.steps;
+    w->stage.dt_valid = 1;
+}
+/* Adds work of this kind (DEMI_E_...), J, to the ledger, and its magnitude to the throughput. */
+DEM_INLINE void demi_work_book(dem_world *w, int what, double work) {
+    w->booked.energy[what] += work;
+    w->booked.throughput += fabs(work);
+}
+/* Called for bodies that get a speed, m/s, between two steps. The next step may rely on it. */
+DEM_INLINE void demi_speed_book(dem_world *w, double speed) {
+    w->booked.speed_max = DEMI_MAX(w->booked.speed_max, speed);
+}
+
 /* Steps that are complete. One that ran out of memory after its move does not count yet; functions
    of the user that are called in a step see its number. */
 static uint64_t demi_steps_done(const dem_world *w) {
@@ -6856,7 +6883,7 @@ static double demi_damping_for(double e, dem_tension tension) {
 /* Marks the properties of pairs and the time step as outdated: the next step rebuilds the lists. */
 static void demi_pairs_changed(dem_world *w) {
     w->stage.pairs_changed = 1;
-    w->stage.dt_valid = 0;
+    demi_dt_outdated(w);
 }
 
 /* Stores the properties of materials i and j in both orders. Also computes their damping ratio,
@@ -6921,8 +6948,7 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
                                     dem_material_desc *desc) {
     if (demi_null_look(world, __func__, desc, "desc")) return DEM_ERROR_ARGUMENT;
     int m = 0;
-    if (demi_material_index((dem_world *)world, __func__, material, &m))
-        return DEM_ERROR_ARGUMENT;
+    if (demi_material_index((dem_world *)world, __func__, material, &m)) return DEM_ERROR_ARGUMENT;
     *desc = world->materials[m];
     return DEM_OK;
 }
@@ -9511,13 +9537,15 @@ static int32_t demi_near_part_key(const dem_world *w, size_t at) {
     j = w->near.ball_b[at] - start[b];
     return w->bodies.slot[a] < w->bodies.slot[b] ? DEMI_BALLS_MOST*i + j : DEMI_BALLS_MOST*j + i;
 }
+/* Discards the filed contact histories: they are in a new list, or belong to other laws. */
+static void demi_filed_forget(dem_world *w) { w->filed.count = 0; }
 /* Files the contact history of all pairs of spheres by slot. The row is the lower slot. The
    partner is the higher slot, or its complement if that was body a of the pair. Returns 0 if memory
    ran out. */
 static int demi_carry_collect(dem_world *w) {
     const int stride = w->memory_stride;
     int d, p, e, k, total = 0, pass;
-    w->filed.count = 0;
+    demi_filed_forget(w);
     if (!stride || !w->domain_count) return 1;
     if (!demi_carry_reserve(w, w->bodies.slot_count, 0, stride)) return 0;
     memset(w->filed.start, 0, ((size_t)w->bodies.slot_count + 2)*sizeof(int32_t));
@@ -9631,7 +9659,7 @@ static int demi_list_drop(dem_world *w) {
             if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }
     }
-    w->stage.list_valid = 0;
+    demi_list_outdated(w);
     return 1;
 }
 
@@ -9848,8 +9876,7 @@ static void demi_body_clear(dem_world *w, int i) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        if (demi_keeps(w, a))
-            memset(demi_datum(w, a, i), 0, demi_item(w, a));
+        if (demi_keeps(w, a)) memset(demi_datum(w, a, i), 0, demi_item(w, a));
     }
 }
 /* Copies the state of body `from` to body `to`. */
@@ -9857,8 +9884,7 @@ static void demi_body_copy(dem_world *w, int from, int to) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        if (demi_keeps(w, a))
-            memcpy(demi_datum(w, a, to), demi_datum(w, a, from), demi_item(w, a));
+        if (demi_keeps(w, a)) memcpy(demi_datum(w, a, to), demi_datum(w, a, from), demi_item(w, a));
     }
 }
 
@@ -9903,11 +9929,10 @@ static double demi_body_energy(const dem_world *w, int i) {
         (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
 }
 
-/* Marks the time step as outdated, or forces, half-step velocities and isolated bodies too, after a
-   change of the scene. */
-static void demi_dt_outdated(dem_world *w) { w->stage.dt_valid = 0; }
+/* Marks forces, the time step and isolated bodies as outdated, after a change of the scene. */
 static void demi_scene_changed(dem_world *w) {
-    w->stage.forces_valid = w->stage.primed = w->stage.quiet = 0;
+    w->stage.quiet = 0;
+    demi_forces_outdated(w);
     demi_dt_outdated(w);
 }
 /* Prepares a world without bodies. */
@@ -9940,7 +9965,7 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
         demi_quat_put(w->bodies.orient + 4*i, dem_quat_make(1, 0, 0, 0));
         demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
     }
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     w->bodies.balance.inserted++;
     w->bodies.balance.present++;
     return (uint32_t)slot;
@@ -10238,7 +10263,6 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
    so that old ids become invalid. */
 static void demi_body_take_out(dem_world *w, int i) {
     const int last = w->bodies.count - 1, slot = (int)w->bodies.slot[i];
-    w->booked.removed += demi_body_energy(w, i);
     if (demi_shape_of(w, i)) w->bodies.shaped--;
     if (i != last) {
         demi_body_copy(w, last, i);
@@ -10247,9 +10271,15 @@ static void demi_body_take_out(dem_world *w, int i) {
     w->bodies.slot_index[slot] = -2 - w->bodies.slot_pending;
     w->bodies.slot_pending = slot;
     w->bodies.slot_generation[slot]++;
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     w->bodies.count = last;
     w->bodies.balance.present--;
+}
+/* The same for a body that leaves the scene. Books its energy, and counts it in *count. */
+static void demi_body_lose(dem_world *w, int i, uint64_t *count) {
+    w->booked.removed += demi_body_energy(w, i);
+    demi_body_take_out(w, i);
+    ++*count;
 }
 
 DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
@@ -10257,8 +10287,7 @@ DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
     int i = demi_body_index(w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
-    demi_body_take_out(w, i);
-    w->bodies.balance.removed++;
+    demi_body_lose(w, i, &w->bodies.balance.removed);
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -11145,8 +11174,7 @@ static double demi_cell_speed(const dem_world *w) {
         fabs((double)w->cell.desc.shear);
     double radius = 0;
     int i;
-    for (i = 0; i < w->bodies.count; i++)
-        radius = DEMI_MAX(radius, (double)demi_radius(w, i));
+    for (i = 0; i < w->bodies.count; i++) radius = DEMI_MAX(radius, (double)demi_radius(w, i));
     return 2*radius*norm;
 }
 /* Adds a contact to the virial. force: N, on a. */
@@ -11225,17 +11253,14 @@ static void demi_cell_drag(dem_world *w, demi_domain *domain) {
    strain rates at which demi_cell_drag was computed. */
 static void demi_cell_book(dem_world *w, const double *drag) {
     const demi_strained *c = &w->cell;
-    double work, power = 0;
+    double power = 0;
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const double *sum = w->domains[d].cell, *flux = sum + DEMI_CELL_FLUX;
-        for (k = 0; k < 3; k++)
-            power += c->rate[k]*sum[DEMI_CELL_VIRIAL + 4*k] - drag[k]*flux[k];
+        for (k = 0; k < 3; k++) power += c->rate[k]*sum[DEMI_CELL_VIRIAL + 4*k] - drag[k]*flux[k];
         power += c->shear*(sum[DEMI_CELL_VIRIAL + 1] - flux[3]);
     }
-    work = power*(double)w->clock.dt/2;
-    w->booked.energy[DEMI_E_CELL] += work;
-    w->booked.throughput += fabs(work);
+    demi_work_book(w, DEMI_E_CELL, power*(double)w->clock.dt/2);
 }
 /* Takes the images across the y faces that are nearest along x; only when lists are rebuilt. */
 static void demi_cell_upright(dem_world *w) {
@@ -12155,7 +12180,7 @@ static int demi_wall_remains(const dem_world *w, const demi_wall *next, int plac
    and the numbers of their features change: contacts are followed by direction once. */
 static void demi_surfaces_outdated(dem_world *w) {
     int d, k;
-    w->facets_valid = 0;
+    demi_facets_outdated(w);
     for (d = 0; d < DEMI_DOMAINS; d++)
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
@@ -15867,8 +15892,7 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
                         if (q < domain->walls) continue;
                         away = demi_wall_distance(wall, element, at, near_by);
                         if (away < near_by)
-                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift,
-                                            cell);
+                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift, cell);
                     }
                 }
     }
@@ -16035,12 +16059,10 @@ static int demi_wall_sums_room(dem_world *w) {
 /* Allocates the forces of all entries that `cross` can hold. */
 static int demi_cross_reserve(dem_world *w) {
     const size_t entries = (size_t)w->domain_count*(size_t)w->cross.stride;
-    const int ok = DEMI_GROW(w, w->cross_incoming, entries) &&
-                   DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1)) &&
-                   (!demi_exchanges(w) ||
-                    DEMI_GROW(w, w->cross_rate,
-                              (size_t)w->bodies.real_count*(entries + DEMI_LANES + 1)));
-    return ok;
+    const size_t reals = (size_t)w->bodies.real_count*(entries + DEMI_LANES + 1);
+    return DEMI_GROW(w, w->cross_incoming, entries) &&
+        DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1)) &&
+        (!demi_exchanges(w) || DEMI_GROW(w, w->cross_rate, reals));
 }
 /* Returns the work group of a body. */
 static int demi_domain_of(const dem_world *w, int body) {
@@ -17039,7 +17061,7 @@ static void demi_effects(dem_world *w) {
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count && !(w->effects.clustered && w->bodies.shaped);
     if (demi_reach_free(w))                     /* velocities may be new since the last step */
-        w->booked.speed_max = DEMI_MAX(w->booked.speed_max, demi_fastest(w));
+        demi_speed_book(w, demi_fastest(w));
     w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
@@ -17255,7 +17277,7 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     const int own = w->desc.law ? w->desc.law_memory : -1;
     dem_real old[DEMI_MEMORY], *fresh = 0;
     int d, k;
-    if (w->filed.stride != was->memory) w->filed.count = 0;    /* invalid: of other laws */
+    if (w->filed.stride != was->memory) demi_filed_forget(w);
     if (!DEMI_GROW(w, fresh, (size_t)w->filed.count*to)) return 0;
     for (k = 0; k < w->filed.count; k++)
         demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from, fresh + (size_t)k*to);
@@ -17441,7 +17463,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
         return demi_no_memory(w, call);
     demi_quiet_mark(w);
     demi_slots_release(w);
-    w->filed.count = 0;
+    demi_filed_forget(w);
     w->stage.skin_chosen = w->stage.near_chosen = 0;
     demi_lists_made(w);
     return DEM_OK;
@@ -27228,8 +27250,7 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
         demi_put(lacks, demi_scale(off, -part));
         for (k = 0; k < 2; k++) lacks[3 + k] = -turn*demi_dot(tilt, r->along[k]);
     }
-    if (!shifts)
-        lacks[5] = (w->joints[i].desc.motor ? w->joints[i].desc.speed : 0) - u[5];
+    if (!shifts) lacks[5] = (w->joints[i].desc.motor ? w->joints[i].desc.speed : 0) - u[5];
     for (k = 0; k < 6; k++) {
         if (!demi_rod_row(w, r, k)) lacks[k] = 0;
         else if (!shifts) lacks[k] -= r->give[k]*r->given[k];
@@ -27361,8 +27382,7 @@ static double demi_joints_shift(dem_world *w) {
         const demi_knot *k = s->knots + i;
         const demi_d3 g = demi_d3_of(w->desc.gravity), x = demi_d3_at(k->x);
         const double fall = demi_d3_dot(g, x) + digit*demi_d3_length(g)*demi_d3_length(x);
-        if (k->mover >= 0)
-            s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
+        if (k->mover >= 0) s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i, *group = s->knots + k->group;
@@ -28047,8 +28067,7 @@ static dem_result demi_impulses_settle(dem_world *w) {
         return demi_refuse(w, "dem_world_step", "there are joints, which the solver %s does not "
                            "support; leave desc.solver at DEM_SOLVER_GAUSS_SEIDEL", solver->name);
     w->clock.dt = w->desc.dt;
-    w->clock.press_since = w->clock.steps;
-    w->stage.dt_valid = 1;
+    demi_dt_settled(w);
     return DEM_OK;
 }
 /* Allocates the arrays of the solver for all contacts that are possible in this step. Returns 0 if
@@ -28566,8 +28585,7 @@ static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_size
     demi_size_table *t;
     double lo, hi;
     int i;
-    if (count < 0)
-        return demi_refuse(w, call, "count is %d, must be >= 0", count);
+    if (count < 0) return demi_refuse(w, call, "count is %d, must be >= 0", count);
     if (!demi_size_ends(w, call, d, &lo, &hi)) return DEM_ERROR_ARGUMENT;
     t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
     if (!t) return demi_no_memory(w, call);
@@ -28611,8 +28629,7 @@ DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_co
         all += share = d->by_count ? number : mass;
         if (!(number > 0)) continue;
         amount[n] = share;
-        radius[n++] = (dem_real)(w->desc.planar ? sqrt(mass/number)
-                                                : demi_cube_root(mass/number));
+        radius[n++] = (dem_real)(w->desc.planar ? sqrt(mass/number) : demi_cube_root(mass/number));
     }
     for (i = 0; i < n; i++) amount[i] /= all;
     demi_free(w, t);
@@ -28935,8 +28952,7 @@ static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) 
             for (x = f[0]; x <= l[0]; x++) {
                 const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
                 for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++)
-                    if (demi_wall_distance(wall, wall->cell_items[k], at, radius) < touch)
-                        return 0;
+                    if (demi_wall_distance(wall, wall->cell_items[k], at, radius) < touch) return 0;
             }
     return 1;
 }
@@ -29408,11 +29424,8 @@ DEM_API int dem_bodies_remove(dem_world *w, const dem_selection *s) {
         count = -1;
     }
     /* backwards: the last body, which takes the index, has been looked at */
-    for (i = w->bodies.count - 1; i >= 0 && count > 0; i--) {
-        if (!marks[i]) continue;
-        demi_body_take_out(w, i);
-        w->bodies.balance.removed++;
-    }
+    for (i = w->bodies.count - 1; i >= 0 && count > 0; i--)
+        if (marks[i]) demi_body_lose(w, i, &w->bodies.balance.removed);
     demi_free(w, marks);
     if (count > 0) demi_scene_changed(w);
     return count;
@@ -29703,7 +29716,7 @@ static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_ve
                         f->drawn.orientation);
     demi_put(velocity, v);
     demi_body_start(w, i, velocity, 0, 0);
-    w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
+    demi_speed_book(w, (double)demi_length(v));
     return i;
 }
 /* Counts the drawn grain as inserted. */
@@ -29988,8 +30001,7 @@ static dem_result demi_outlets_run(dem_world *w) {
         if (!takes) continue;
         if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
         demi_outlet_book(w, takes, i);
-        demi_body_take_out(w, i--);
-        w->bodies.balance.left++;
+        demi_body_lose(w, i--, &w->bodies.balance.left);
     }
     return DEM_OK;
 }
@@ -30133,7 +30145,7 @@ static void demi_wall_before(dem_world *w, int wall) {
     demi_finish(w);                             /* the open half kick belongs to the old forces */
     if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
         !w->stage.list_valid || w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
-        w->stage.forces_valid = w->stage.primed = 0;
+        demi_forces_outdated(w);
     else demi_steer(w, wall, -1);
 }
 /* Call this after the velocity of a wall's surface has changed: see demi_wall_before. */
@@ -30222,8 +30234,7 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     if (!dropped) return demi_no_memory(w, __func__);
     if (!remains) demi_surfaces_outdated(w);
-    if (!remains || !demi_wall_led(w, &w->walls[i]))
-        w->stage.forces_valid = w->stage.primed = 0;
+    if (!remains || !demi_wall_led(w, &w->walls[i])) demi_forces_outdated(w);
     demi_wall_before(w, i);
     w->walls[i] = next;
     demi_wall_after(w, i);
@@ -30545,9 +30556,7 @@ static double demi_rail_push(int locked, dem_real inertia, const dem_real *u, co
 /* Adds work to that of a rail, J. */
 static void demi_rail_book(dem_world *w, demi_rail *r, double work) {
     r->state.work += work;
-    if (!w->desc.ledger) return;
-    w->booked.energy[DEMI_E_WALLS] += work;
-    w->booked.throughput += fabs(work);
+    if (w->desc.ledger) demi_work_book(w, DEMI_E_WALLS, work);
 }
 /* Adds the reaction of one rail to its body i. */
 static void demi_rail_act(dem_world *w, demi_rail *r, int i) {
@@ -30921,19 +30930,18 @@ static dem_result demi_radii_grow(dem_world *h) {
     if (!h->desc.growth || !(passed > 0) || passed < (double)h->desc.growth_interval*(1 - 1e-9))
         return DEM_OK;
     result = demi_all(h, demi_member_grow);
-    for (k = 0; k < demi_members(h); k++)
-        grown = DEMI_MAX(grown, demi_member(h, k)->grown);
+    for (k = 0; k < demi_members(h); k++) grown = DEMI_MAX(grown, demi_member(h, k)->grown);
     if (result == DEM_OK) result = demi_agree(h, &grown, 1);
     if (result != DEM_OK) return result;
     h->clock.grown = until;
     for (k = 0; k < demi_members(h); k++) {
         dem_world *w = demi_member(h, k);
         w->clock.grown = until;
-        if (!(grown > 0)) continue;
-        w->stage.forces_valid = w->stage.primed = 0;
+        if (grown > 0) demi_forces_outdated(w);
     }
     if (!(grown > 0)) return DEM_OK;
-    h->stage.list_valid = h->stage.forces_valid = h->stage.primed = 0;
+    demi_list_outdated(h);
+    demi_forces_outdated(h);
     h->clock.press_since = h->clock.steps;      /* growing bodies press each other */
     if (grown > 2) demi_dt_outdated(h);
     return DEM_OK;
@@ -31567,7 +31575,7 @@ static dem_result demi_springs_settle(dem_world *h) {
         const dem_real share = h->dt_share > 0 ? (dem_real)h->dt_share : 1;
         const dem_real dt = share*(g.spin*(double)easy > 0.1 ? (dem_real)(0.1/g.spin) : easy);
         if (!((double)dt >= DEMI_DT_LEAST)) return demi_dt_refuse(h, (double)dt, a.binds);
-        if (dt < h->clock.dt || dt > h->clock.dt) h->stage.primed = 0;
+        if (dt < h->clock.dt || dt > h->clock.dt) demi_halves_outdated(h);
         h->clock.dt = dt;
         h->clock.held.from = (double)a.contact_time/50;
         h->clock.held.limit = dt < share*easy ? g.spin : 5*(double)a.dt;
@@ -31575,8 +31583,8 @@ static dem_result demi_springs_settle(dem_world *h) {
             : (double)easy < 0.99*h->clock.held.from ? DEMI_HELD_DASHPOT : DEMI_HELD_NOT;
     }
     h->clock.assumed_speed = (double)a.speed;
-    h->stage.dt_valid = 1;
-    h->clock.press_due = h->clock.press_since = h->clock.steps;
+    h->clock.press_due = h->clock.steps;
+    demi_dt_settled(h);
     demi_dt_share(h);
     return DEM_OK;
 }
@@ -31728,7 +31736,7 @@ static dem_result demi_dt_check(dem_world *h) {
     if (!(limit*room >= DEMI_DT_LEAST))
         return demi_dt_refuse(h, limit*room, "contacts that press a body");
     result = demi_all(h, demi_member_finish);
-    h->stage.primed = 0;
+    demi_halves_outdated(h);
     h->clock.dt = (dem_real)(limit*room);
     h->clock.held.by = DEMI_HELD_PRESSED;
     h->clock.held.limit = limit;
@@ -31841,9 +31849,8 @@ static void demi_growth_book(dem_world *w, double sag) {
         w->booked.energy[DEMI_E_SHEAR_STORED];
     const double work = demi_sum_energy(w, DEMI_E_ELASTIC) - w->booked.energy[DEMI_E_ELASTIC] +
         shear + sag;
-    w->booked.energy[DEMI_E_GROWTH] += work;
+    demi_work_book(w, DEMI_E_GROWTH, work);
     w->booked.energy[DEMI_E_SHEAR_WORK] += shear;
-    w->booked.throughput += fabs(work);
 }
 /* Closes the account of a step with springs, when its forces are known. Adds the work and losses of
    all domains (work groups) and of walls to the totals, and replaces the stored energies. With a
@@ -31866,11 +31873,9 @@ static void demi_ledger_book(dem_world *w) {
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
         w->booked.energy[DEMI_E_TOLD] += fabs(demi_sum_energy(w, (int)i));
-    for (i = 0; i < (size_t)w->wall_count;
-         i++) walls += (double)w->walls[i].loads.power*(w->stage.forces_valid
-                                                           ? (double)w->clock.dt : 0);
-    w->booked.energy[DEMI_E_WALLS] += walls;
-    w->booked.throughput += fabs(walls);
+    for (i = 0; i < (size_t)w->wall_count; i++)
+        walls += (double)w->walls[i].loads.power*(w->stage.forces_valid ? (double)w->clock.dt : 0);
+    demi_work_book(w, DEMI_E_WALLS, walls);
     if (w->cell.on && w->stage.forces_valid) demi_cell_book(w, w->cell.rate);
 }
 DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
@@ -32621,8 +32626,7 @@ static void demi_field_branch(const dem_world *w, demi_grid *g, const demi_walk 
                       DEMI_STRESS, 6, part);
     }
     if (is_a && c->counts) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
-    if (is_b && c->counts)
-        demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
+    if (is_b && c->counts) demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
 }
 /* Adds all contacts of the world. */
 static void demi_field_contacts(const dem_world *w, demi_grid *g) {
@@ -33438,8 +33442,7 @@ static void demi_events_take(dem_world *w) {
     e->matched = before;
     e->before_count = count;
     e->rebuilds = w->clock.rebuilds;
-    for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--)
-        ok = demi_event_end(w, i);
+    for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--) ok = demi_event_end(w, i);
     e->n.fresh = 0;
     if (!ok) demi_events_fail(w);
 }
@@ -34114,8 +34117,7 @@ static dem_result demi_outflow(dem_world *w) {
             const double x = (double)w->bodies.pos[4*i + k];
             if (w->desc.boundary[k] != DEM_BOUNDARY_OUTFLOW || (x >= lo[k] && x <= hi[k])) continue;
             if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
-            demi_body_take_out(w, i--);
-            w->bodies.balance.left++;
+            demi_body_lose(w, i--, &w->bodies.balance.left);
             break;
         }
     return DEM_OK;
@@ -34163,9 +34165,7 @@ static dem_result demi_step_move(dem_world *w) {
     w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
     if (demi_response_is(w, DEMI_MIDWAY)) demi_walls_bear(w);
     if (w->desc.ledger) {
-        const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
-        w->booked.energy[DEMI_E_GRAVITY] += work;
-        w->booked.throughput += fabs(work);
+        demi_work_book(w, DEMI_E_GRAVITY, demi_sum_energy(w, DEMI_E_GRAVITY));
         demi_due_book(w);
         if (w->events.n.on) demi_events_due(w);
     }
@@ -34367,7 +34367,7 @@ static dem_result demi_all_lose(dem_world *h, dem_result (*task)(dem_world *memb
     for (k = 0; k < demi_members(h); k++)
         most = DEMI_MAX(most, !demi_member(h, k)->stage.list_valid);
     if (result == DEM_OK) result = demi_agree(h, &most, 1);
-    if (most > 0) h->stage.list_valid = 0;
+    if (most > 0) demi_list_outdated(h);
     return result;
 }
 /* True if the list is not valid, or a pair that is not in it may have come near. */
@@ -34440,9 +34440,9 @@ static dem_result demi_motions_begin(dem_world *h) {
     if (!parts) return DEM_OK;
     if (parts & 2 || (parts & 1 && h->team)) {
         const dem_result result = demi_all_agree(h, demi_member_part);
-        h->stage.list_valid = 0;
+        demi_list_outdated(h);
         if (result != DEM_OK) return result;
-    } else if (parts & 1) h->facets_valid = 0;
+    } else if (parts & 1) demi_facets_outdated(h);
     for (i = 0; i < first->wall_count; i++)
         first->walls[i].idle &= demi_wall_waits(&first->walls[i], now);
     return DEM_OK;
@@ -34455,7 +34455,7 @@ static dem_result demi_step_answer(dem_world *h) {
     const int search = demi_list_due(h);
     if (result == DEM_OK && search) {
         result = demi_all_rebuild(h);
-        if (result == DEM_OK && demi_outgrown(h)) h->stage.dt_valid = 0;
+        if (result == DEM_OK && demi_outgrown(h)) demi_dt_outdated(h);
     }
     if (result == DEM_OK) result = demi_all_forces(h, !search && (!h->team || h->near_due));
     if (result == DEM_OK) result = demi_all(h, demi_member_end);
@@ -34510,7 +34510,7 @@ static dem_result demi_refresh_answer(dem_world *h) {
     int stale = 0;
     if (result != DEM_OK) return result;
     if (h->stage.pairs_changed) {               /* half-step velocities belong to the old forces */
-        h->stage.primed = 0;
+        demi_halves_outdated(h);
         if (!demi_list_drop(h)) return demi_no_memory(h, "dem_world_step");
     }
     stale = !h->stage.list_valid;
@@ -34609,8 +34609,7 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
 }
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
-    if (steps < 0)
-        return demi_refuse(w, __func__, "steps is %d, must be >= 0", steps);
+    if (steps < 0) return demi_refuse(w, __func__, "steps is %d, must be >= 0", steps);
     if (steps && demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (w->look.under_way)
         return demi_refuse(w, __func__, "called from the function of an output "
@@ -34725,8 +34724,7 @@ static double demi_calm(const dem_world *w, double speed, double *look) {
     double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first grains */
     int i;
     if (w->bodies.count) radius = 0;
-    for (i = 0; i < w->bodies.count; i++)
-        radius += (double)demi_radius(w, i)/w->bodies.count;
+    for (i = 0; i < w->bodies.count; i++) radius += (double)demi_radius(w, i)/w->bodies.count;
     if (!(speed > 0) && g > 0) speed = 0.01*sqrt(2*g*radius);
     *look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(speed, 1e-300);
     return speed;
@@ -40360,7 +40358,7 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     r.t = demi_twin_make(w);
     if (!r.t) return demi_no_memory(w, "dem_checkpoint_read");
     result = demi_checkpoint_scene(w, r.t, path, &r.s, head.parts);
-    w->facets_valid = 0;                        /* the twin computes the weights of shared walls */
+    demi_facets_outdated(w);                    /* the twin computes the weights of shared walls */
     if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
     if (result == DEM_OK && adapt) result = adapt(r.t, how);
@@ -40597,7 +40595,7 @@ static dem_result demi_changes_apply(dem_world *w, void *how) {
             const dem_pair pair = w->pairs[i*DEMI_MATERIALS + j].given;
             demi_pair_put(w, i, j, &pair);
         }
-    if (c->laws) w->filed.count = 0;            /* they mean something else */
+    if (c->laws) demi_filed_forget(w);          /* they mean something else */
     for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].kept = 0;
     if (c->pairs) demi_surfaces_outdated(w);
     if (!w->desc.ledger) demi_events_clear(w);  /* without an account nothing is recorded */
@@ -40608,7 +40606,7 @@ static dem_result demi_changes_apply(dem_world *w, void *how) {
         w->booked.removed = w->booked.throughput = 0;
     }
     if (!c->growth) w->clock.grown = w->clock.time;     /* growth begins now */
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     demi_pairs_changed(w);
     demi_scene_changed(w);
     /* now laws and histories agree, also in a checkpoint that is written before the next step */
@@ -41994,7 +41992,7 @@ static void demi_try_set(dem_world *t, const demi_try *row) {
             t->desc.dt *= is.contact_time/was.contact_time;
     }
     demi_pairs_changed(t);
-    t->stage.primed = 0;
+    demi_halves_outdated(t);
 }
 /* Moves every body that is not fixed by at most 1e-6 of its radius along each axis, at random; seed
    0 moves none. This is far less than any relevant overlap, and enough for differences between runs
@@ -42755,7 +42753,7 @@ static dem_world *demi_effect_twin(dem_world *w, const char *state, size_t size,
     t->desc.dt = t->clock.dt;
     if (leave) leave(t, own);
     demi_pairs_changed(t);
-    t->stage.primed = 0;
+    demi_halves_outdated(t);
     return t;
 }
 /* Returns the wall time (s) of `steps` steps; does nothing if *result is an error already. */
@@ -43353,19 +43351,17 @@ static int demi_grain_append(dem_world *w, const char **from) {
     demi_grain_unpack(w, i, from);
     w->bodies.slot_index[w->bodies.slot[i]] = i;
     if (demi_shape_of(w, i)) w->bodies.shaped++;
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     return i;
 }
 /* Removes a body from a slab that stays in the scene: another slab owns it. Its generation and the
    totals of the scene do not change, and its slot does not become free. */
 static void demi_grain_forget(dem_world *w, int i) {
     const int slot = (int)w->bodies.slot[i], pending = w->bodies.slot_pending;
-    const double removed = w->booked.removed;
     demi_body_take_out(w, i);
     w->bodies.slot_pending = pending;
     w->bodies.slot_index[slot] = -1;
     w->bodies.slot_generation[slot]--;
-    w->booked.removed = removed;
     w->bodies.ghost[slot] = 0;
 }
 
@@ -44083,7 +44079,7 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     const double skin_before = h->margin.skin_auto;
     dem_result result;
-    h->stage.list_valid = 0;
+    demi_list_outdated(h);
     demi_slabs_surfaces(s);
     result = demi_slabs_try(s, demi_slab_drop);
     if (s->count > 1) {
@@ -44209,7 +44205,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
             if ((s->slabs[k].index == 0 || at[s->axis] >= s->borders[s->slabs[k].index]) &&
                 (s->slabs[k].index == s->count - 1 ||
                  at[s->axis] < s->borders[s->slabs[k].index + 1])) owner = &s->slabs[k];
-        h->stage.list_valid = 0;
+        demi_list_outdated(h);
         result = demi_slabs_feed_room(s, owner, x[n], r);
     }
     if (result != DEM_OK) { f->random = random; return -(int)result; }
@@ -44230,7 +44226,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     }
     s->known[s->slots++] = 1;
     h->bodies.balance.inserted++;
-    h->booked.speed_max = DEMI_MAX(h->booked.speed_max, (double)demi_length(v[n]));
+    demi_speed_book(h, (double)demi_length(v[n]));
     /* forces may act on it */
     if (h->desc.force || h->desc.body_force || demi_reach_of(h, 1) > 0) demi_scene_changed(h);
     demi_feed_count(f);
@@ -44754,7 +44750,7 @@ static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const ch
         demi_grain_unpack(w, w->bodies.slot_index[slot], &from);
         seen[slot] = 1;
     }
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     demi_filed_unpack(w, add, &head, from);
 }
 /* Adds the slots of grains inserted since the last collection to the world, without bodies yet. */
@@ -44845,7 +44841,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     }
     for (k = 0; k < DEMI_DOMAINS; k++)          /* those of the slabs take over */
         w->domains[k].kept = w->domains[k].contacts = 0;
-    w->filed.count = 0;
+    demi_filed_forget(w);
     memset(w->filed.start, 0, ((size_t)w->filed.rows + 2)*sizeof(int32_t));
     memset(*seen, 0, (size_t)s->slots + 1);
     return DEM_OK;
@@ -44875,11 +44871,7 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         s->told = s->slots;
         /* not in any slab: it left through an outflow boundary or an outlet */
         for (i = w->bodies.count - 1; i >= 0; i--)
-            if (!seen[w->bodies.slot[i]]) {
-                const double removed = w->booked.removed;
-                demi_body_take_out(w, i);
-                w->booked.removed = removed;
-            }
+            if (!seen[w->bodies.slot[i]]) demi_body_take_out(w, i);
         /* counts of the slabs replace those of the world */
         w->bodies.balance.inserted = s->head.bodies.balance.inserted;
         w->bodies.balance.removed = s->head.bodies.balance.removed;

@@ -3065,9 +3065,10 @@ class Ledger(Struct):
         ('throughput', ctypes.c_double, 'sum of the magnitudes of what was supplied'),
         ('growth', ctypes.c_double,
          'supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or walls '
-         'are added, moved or removed between steps, materials change. What springs held on a grain that an '
-         'outlet or an outflow boundary removes is in the residual, and so is what they gain when two walls in'
-         ' one place part below a grain: then both act where one did.'),
+         'are added, moved or removed between steps, materials change. Three amounts are in the residual: what'
+         ' springs held on a grain that an outlet or an outflow boundary removes; what springs gain when two '
+         'walls in one place part below a grain, because then both act where one did; what a contact holds '
+         'when it leaves the range of its law.'),
         ('residual', ctypes.c_double, ''),
         ('unknown', ctypes.c_double, '> 0: the user-defined law created energy'),
     ]

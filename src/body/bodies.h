@@ -211,8 +211,7 @@ static void demi_body_clear(dem_world *w, int i) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        if (demi_keeps(w, a))
-            memset(demi_datum(w, a, i), 0, demi_item(w, a));
+        if (demi_keeps(w, a)) memset(demi_datum(w, a, i), 0, demi_item(w, a));
     }
 }
 /* Copies the state of body `from` to body `to`. */
@@ -220,8 +219,7 @@ static void demi_body_copy(dem_world *w, int from, int to) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        if (demi_keeps(w, a))
-            memcpy(demi_datum(w, a, to), demi_datum(w, a, from), demi_item(w, a));
+        if (demi_keeps(w, a)) memcpy(demi_datum(w, a, to), demi_datum(w, a, from), demi_item(w, a));
     }
 }
 
@@ -266,11 +264,10 @@ static double demi_body_energy(const dem_world *w, int i) {
         (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
 }
 
-/* Marks the time step as outdated, or forces, half-step velocities and isolated bodies too, after a
-   change of the scene. */
-static void demi_dt_outdated(dem_world *w) { w->stage.dt_valid = 0; }
+/* Marks forces, the time step and isolated bodies as outdated, after a change of the scene. */
 static void demi_scene_changed(dem_world *w) {
-    w->stage.forces_valid = w->stage.primed = w->stage.quiet = 0;
+    w->stage.quiet = 0;
+    demi_forces_outdated(w);
     demi_dt_outdated(w);
 }
 /* Prepares a world without bodies. */
@@ -303,7 +300,7 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
         demi_quat_put(w->bodies.orient + 4*i, dem_quat_make(1, 0, 0, 0));
         demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
     }
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     w->bodies.balance.inserted++;
     w->bodies.balance.present++;
     return (uint32_t)slot;
@@ -601,7 +598,6 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
    so that old ids become invalid. */
 static void demi_body_take_out(dem_world *w, int i) {
     const int last = w->bodies.count - 1, slot = (int)w->bodies.slot[i];
-    w->booked.removed += demi_body_energy(w, i);
     if (demi_shape_of(w, i)) w->bodies.shaped--;
     if (i != last) {
         demi_body_copy(w, last, i);
@@ -610,9 +606,15 @@ static void demi_body_take_out(dem_world *w, int i) {
     w->bodies.slot_index[slot] = -2 - w->bodies.slot_pending;
     w->bodies.slot_pending = slot;
     w->bodies.slot_generation[slot]++;
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     w->bodies.count = last;
     w->bodies.balance.present--;
+}
+/* The same for a body that leaves the scene. Books its energy, and counts it in *count. */
+static void demi_body_lose(dem_world *w, int i, uint64_t *count) {
+    w->booked.removed += demi_body_energy(w, i);
+    demi_body_take_out(w, i);
+    ++*count;
 }
 
 DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
@@ -620,8 +622,7 @@ DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
     int i = demi_body_index(w, __func__, body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w)) return demi_no_memory(w, __func__);
-    demi_body_take_out(w, i);
-    w->bodies.balance.removed++;
+    demi_body_lose(w, i, &w->bodies.balance.removed);
     demi_scene_changed(w);
     return DEM_OK;
 }

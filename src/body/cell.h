@@ -57,8 +57,7 @@ static double demi_cell_speed(const dem_world *w) {
         fabs((double)w->cell.desc.shear);
     double radius = 0;
     int i;
-    for (i = 0; i < w->bodies.count; i++)
-        radius = DEMI_MAX(radius, (double)demi_radius(w, i));
+    for (i = 0; i < w->bodies.count; i++) radius = DEMI_MAX(radius, (double)demi_radius(w, i));
     return 2*radius*norm;
 }
 /* Adds a contact to the virial. force: N, on a. */
@@ -137,17 +136,14 @@ static void demi_cell_drag(dem_world *w, demi_domain *domain) {
    strain rates at which demi_cell_drag was computed. */
 static void demi_cell_book(dem_world *w, const double *drag) {
     const demi_strained *c = &w->cell;
-    double work, power = 0;
+    double power = 0;
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const double *sum = w->domains[d].cell, *flux = sum + DEMI_CELL_FLUX;
-        for (k = 0; k < 3; k++)
-            power += c->rate[k]*sum[DEMI_CELL_VIRIAL + 4*k] - drag[k]*flux[k];
+        for (k = 0; k < 3; k++) power += c->rate[k]*sum[DEMI_CELL_VIRIAL + 4*k] - drag[k]*flux[k];
         power += c->shear*(sum[DEMI_CELL_VIRIAL + 1] - flux[3]);
     }
-    work = power*(double)w->clock.dt/2;
-    w->booked.energy[DEMI_E_CELL] += work;
-    w->booked.throughput += fabs(work);
+    demi_work_book(w, DEMI_E_CELL, power*(double)w->clock.dt/2);
 }
 /* Takes the images across the y faces that are nearest along x; only when lists are rebuilt. */
 static void demi_cell_upright(dem_world *w) {

@@ -44,13 +44,15 @@ static int32_t demi_near_part_key(const dem_world *w, size_t at) {
     j = w->near.ball_b[at] - start[b];
     return w->bodies.slot[a] < w->bodies.slot[b] ? DEMI_BALLS_MOST*i + j : DEMI_BALLS_MOST*j + i;
 }
+/* Discards the filed contact histories: they are in a new list, or belong to other laws. */
+static void demi_filed_forget(dem_world *w) { w->filed.count = 0; }
 /* Files the contact history of all pairs of spheres by slot. The row is the lower slot. The
    partner is the higher slot, or its complement if that was body a of the pair. Returns 0 if memory
    ran out. */
 static int demi_carry_collect(dem_world *w) {
     const int stride = w->memory_stride;
     int d, p, e, k, total = 0, pass;
-    w->filed.count = 0;
+    demi_filed_forget(w);
     if (!stride || !w->domain_count) return 1;
     if (!demi_carry_reserve(w, w->bodies.slot_count, 0, stride)) return 0;
     memset(w->filed.start, 0, ((size_t)w->bodies.slot_count + 2)*sizeof(int32_t));
@@ -164,6 +166,6 @@ static int demi_list_drop(dem_world *w) {
             if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }
     }
-    w->stage.list_valid = 0;
+    demi_list_outdated(w);
     return 1;
 }

@@ -554,6 +554,33 @@ DEM_INLINE void demi_called(const dem_world *w, demi_calling was) {
 /* In a function that stands in for one of the user's, and that DEMI_USER calls. */
 #define DEMI_USER_WITHIN(call) call
 
+/* Mark what a change of the scene makes invalid; the next step makes it again (demi_stages). Lists:
+   demi_list_drop does so, once it has filed the contact histories; the head of a team follows its
+   members. Half-step velocities: the time step or velocities change. Forces, and therefore
+   half-step velocities: something else acts on bodies. Facets: a wall comes, goes or moves
+   otherwise (demi_surfaces_outdated). Linked linear list: a body comes or goes. Time step: bodies,
+   materials or speeds change. */
+DEM_INLINE void demi_list_outdated(dem_world *w) { w->stage.list_valid = 0; }
+DEM_INLINE void demi_halves_outdated(dem_world *w) { w->stage.primed = 0; }
+DEM_INLINE void demi_forces_outdated(dem_world *w) { w->stage.forces_valid = w->stage.primed = 0; }
+DEM_INLINE void demi_facets_outdated(dem_world *w) { w->facets_valid = 0; }
+DEM_INLINE void demi_lll_outdated(dem_world *w) { w->lll_valid = 0; }
+DEM_INLINE void demi_dt_outdated(dem_world *w) { w->stage.dt_valid = 0; }
+/* Called when the time step suits the scene. >>advice looks for pressed bodies from here on. */
+DEM_INLINE void demi_dt_settled(dem_world *w) {
+    w->clock.press_since = w->clock.steps;
+    w->stage.dt_valid = 1;
+}
+/* Adds work of this kind (DEMI_E_...), J, to the ledger, and its magnitude to the throughput. */
+DEM_INLINE void demi_work_book(dem_world *w, int what, double work) {
+    w->booked.energy[what] += work;
+    w->booked.throughput += fabs(work);
+}
+/* Called for bodies that get a speed, m/s, between two steps. The next step may rely on it. */
+DEM_INLINE void demi_speed_book(dem_world *w, double speed) {
+    w->booked.speed_max = DEMI_MAX(w->booked.speed_max, speed);
+}
+
 /* Steps that are complete. One that ran out of memory after its move does not count yet; functions
    of the user that are called in a step see its number. */
 static uint64_t demi_steps_done(const dem_world *w) {

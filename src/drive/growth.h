@@ -99,19 +99,18 @@ static dem_result demi_radii_grow(dem_world *h) {
     if (!h->desc.growth || !(passed > 0) || passed < (double)h->desc.growth_interval*(1 - 1e-9))
         return DEM_OK;
     result = demi_all(h, demi_member_grow);
-    for (k = 0; k < demi_members(h); k++)
-        grown = DEMI_MAX(grown, demi_member(h, k)->grown);
+    for (k = 0; k < demi_members(h); k++) grown = DEMI_MAX(grown, demi_member(h, k)->grown);
     if (result == DEM_OK) result = demi_agree(h, &grown, 1);
     if (result != DEM_OK) return result;
     h->clock.grown = until;
     for (k = 0; k < demi_members(h); k++) {
         dem_world *w = demi_member(h, k);
         w->clock.grown = until;
-        if (!(grown > 0)) continue;
-        w->stage.forces_valid = w->stage.primed = 0;
+        if (grown > 0) demi_forces_outdated(w);
     }
     if (!(grown > 0)) return DEM_OK;
-    h->stage.list_valid = h->stage.forces_valid = h->stage.primed = 0;
+    demi_list_outdated(h);
+    demi_forces_outdated(h);
     h->clock.press_since = h->clock.steps;      /* growing bodies press each other */
     if (grown > 2) demi_dt_outdated(h);
     return DEM_OK;

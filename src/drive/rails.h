@@ -156,9 +156,7 @@ static double demi_rail_push(int locked, dem_real inertia, const dem_real *u, co
 /* Adds work to that of a rail, J. */
 static void demi_rail_book(dem_world *w, demi_rail *r, double work) {
     r->state.work += work;
-    if (!w->desc.ledger) return;
-    w->booked.energy[DEMI_E_WALLS] += work;
-    w->booked.throughput += fabs(work);
+    if (w->desc.ledger) demi_work_book(w, DEMI_E_WALLS, work);
 }
 /* Adds the reaction of one rail to its body i. */
 static void demi_rail_act(dem_world *w, demi_rail *r, int i) {

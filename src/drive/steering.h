@@ -61,7 +61,7 @@ static void demi_wall_before(dem_world *w, int wall) {
     demi_finish(w);                             /* the open half kick belongs to the old forces */
     if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
         !w->stage.list_valid || w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
-        w->stage.forces_valid = w->stage.primed = 0;
+        demi_forces_outdated(w);
     else demi_steer(w, wall, -1);
 }
 /* Call this after the velocity of a wall's surface has changed: see demi_wall_before. */
@@ -150,8 +150,7 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     if (!dropped) return demi_no_memory(w, __func__);
     if (!remains) demi_surfaces_outdated(w);
-    if (!remains || !demi_wall_led(w, &w->walls[i]))
-        w->stage.forces_valid = w->stage.primed = 0;
+    if (!remains || !demi_wall_led(w, &w->walls[i])) demi_forces_outdated(w);
     demi_wall_before(w, i);
     w->walls[i] = next;
     demi_wall_after(w, i);

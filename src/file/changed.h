@@ -169,7 +169,7 @@ static dem_result demi_changes_apply(dem_world *w, void *how) {
             const dem_pair pair = w->pairs[i*DEMI_MATERIALS + j].given;
             demi_pair_put(w, i, j, &pair);
         }
-    if (c->laws) w->filed.count = 0;            /* they mean something else */
+    if (c->laws) demi_filed_forget(w);          /* they mean something else */
     for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].kept = 0;
     if (c->pairs) demi_surfaces_outdated(w);
     if (!w->desc.ledger) demi_events_clear(w);  /* without an account nothing is recorded */
@@ -180,7 +180,7 @@ static dem_result demi_changes_apply(dem_world *w, void *how) {
         w->booked.removed = w->booked.throughput = 0;
     }
     if (!c->growth) w->clock.grown = w->clock.time;     /* growth begins now */
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     demi_pairs_changed(w);
     demi_scene_changed(w);
     /* now laws and histories agree, also in a checkpoint that is written before the next step */

@@ -575,7 +575,7 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     r.t = demi_twin_make(w);
     if (!r.t) return demi_no_memory(w, "dem_checkpoint_read");
     result = demi_checkpoint_scene(w, r.t, path, &r.s, head.parts);
-    w->facets_valid = 0;                        /* the twin computes the weights of shared walls */
+    demi_facets_outdated(w);                    /* the twin computes the weights of shared walls */
     if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
     if (result == DEM_OK && adapt) result = adapt(r.t, how);

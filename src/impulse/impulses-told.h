@@ -19,8 +19,7 @@ static dem_result demi_impulses_settle(dem_world *w) {
         return demi_refuse(w, "dem_world_step", "there are joints, which the solver %s does not "
                            "support; leave desc.solver at DEM_SOLVER_GAUSS_SEIDEL", solver->name);
     w->clock.dt = w->desc.dt;
-    w->clock.press_since = w->clock.steps;
-    w->stage.dt_valid = 1;
+    demi_dt_settled(w);
     return DEM_OK;
 }
 /* Allocates the arrays of the solver for all contacts that are possible in this step. Returns 0 if

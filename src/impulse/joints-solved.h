@@ -628,8 +628,7 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
         demi_put(lacks, demi_scale(off, -part));
         for (k = 0; k < 2; k++) lacks[3 + k] = -turn*demi_dot(tilt, r->along[k]);
     }
-    if (!shifts)
-        lacks[5] = (w->joints[i].desc.motor ? w->joints[i].desc.speed : 0) - u[5];
+    if (!shifts) lacks[5] = (w->joints[i].desc.motor ? w->joints[i].desc.speed : 0) - u[5];
     for (k = 0; k < 6; k++) {
         if (!demi_rod_row(w, r, k)) lacks[k] = 0;
         else if (!shifts) lacks[k] -= r->give[k]*r->given[k];
@@ -761,8 +760,7 @@ static double demi_joints_shift(dem_world *w) {
         const demi_knot *k = s->knots + i;
         const demi_d3 g = demi_d3_of(w->desc.gravity), x = demi_d3_at(k->x);
         const double fall = demi_d3_dot(g, x) + digit*demi_d3_length(g)*demi_d3_length(x);
-        if (k->mover >= 0)
-            s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
+        if (k->mover >= 0) s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
     for (i = 0; i < s->knot_count; i++) {
         const demi_knot *k = s->knots + i, *group = s->knots + k->group;

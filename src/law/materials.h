@@ -130,7 +130,7 @@ static double demi_damping_for(double e, dem_tension tension) {
 /* Marks the properties of pairs and the time step as outdated: the next step rebuilds the lists. */
 static void demi_pairs_changed(dem_world *w) {
     w->stage.pairs_changed = 1;
-    w->stage.dt_valid = 0;
+    demi_dt_outdated(w);
 }
 
 /* Stores the properties of materials i and j in both orders. Also computes their damping ratio,
@@ -195,8 +195,7 @@ DEM_API dem_result dem_material_get(const dem_world *world, dem_material materia
                                     dem_material_desc *desc) {
     if (demi_null_look(world, __func__, desc, "desc")) return DEM_ERROR_ARGUMENT;
     int m = 0;
-    if (demi_material_index((dem_world *)world, __func__, material, &m))
-        return DEM_ERROR_ARGUMENT;
+    if (demi_material_index((dem_world *)world, __func__, material, &m)) return DEM_ERROR_ARGUMENT;
     *desc = world->materials[m];
     return DEM_OK;
 }

@@ -456,7 +456,7 @@ static dem_world *demi_effect_twin(dem_world *w, const char *state, size_t size,
     t->desc.dt = t->clock.dt;
     if (leave) leave(t, own);
     demi_pairs_changed(t);
-    t->stage.primed = 0;
+    demi_halves_outdated(t);
     return t;
 }
 /* Returns the wall time (s) of `steps` steps; does nothing if *result is an error already. */

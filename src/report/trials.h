@@ -124,7 +124,7 @@ static void demi_try_set(dem_world *t, const demi_try *row) {
             t->desc.dt *= is.contact_time/was.contact_time;
     }
     demi_pairs_changed(t);
-    t->stage.primed = 0;
+    demi_halves_outdated(t);
 }
 /* Moves every body that is not fixed by at most 1e-6 of its radius along each axis, at random; seed
    0 moves none. This is far less than any relevant overlap, and enough for differences between runs

@@ -625,7 +625,7 @@ static dem_result demi_springs_settle(dem_world *h) {
         const dem_real share = h->dt_share > 0 ? (dem_real)h->dt_share : 1;
         const dem_real dt = share*(g.spin*(double)easy > 0.1 ? (dem_real)(0.1/g.spin) : easy);
         if (!((double)dt >= DEMI_DT_LEAST)) return demi_dt_refuse(h, (double)dt, a.binds);
-        if (dt < h->clock.dt || dt > h->clock.dt) h->stage.primed = 0;
+        if (dt < h->clock.dt || dt > h->clock.dt) demi_halves_outdated(h);
         h->clock.dt = dt;
         h->clock.held.from = (double)a.contact_time/50;
         h->clock.held.limit = dt < share*easy ? g.spin : 5*(double)a.dt;
@@ -633,8 +633,8 @@ static dem_result demi_springs_settle(dem_world *h) {
             : (double)easy < 0.99*h->clock.held.from ? DEMI_HELD_DASHPOT : DEMI_HELD_NOT;
     }
     h->clock.assumed_speed = (double)a.speed;
-    h->stage.dt_valid = 1;
-    h->clock.press_due = h->clock.press_since = h->clock.steps;
+    h->clock.press_due = h->clock.steps;
+    demi_dt_settled(h);
     demi_dt_share(h);
     return DEM_OK;
 }
@@ -786,7 +786,7 @@ static dem_result demi_dt_check(dem_world *h) {
     if (!(limit*room >= DEMI_DT_LEAST))
         return demi_dt_refuse(h, limit*room, "contacts that press a body");
     result = demi_all(h, demi_member_finish);
-    h->stage.primed = 0;
+    demi_halves_outdated(h);
     h->clock.dt = (dem_real)(limit*room);
     h->clock.held.by = DEMI_HELD_PRESSED;
     h->clock.held.limit = limit;

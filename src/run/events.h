@@ -521,8 +521,7 @@ static void demi_events_take(dem_world *w) {
     e->matched = before;
     e->before_count = count;
     e->rebuilds = w->clock.rebuilds;
-    for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--)
-        ok = demi_event_end(w, i);
+    for (i = e->n.open - 1; ok && (i = demi_event_left(e, i)) >= 0; i--) ok = demi_event_end(w, i);
     e->n.fresh = 0;
     if (!ok) demi_events_fail(w);
 }

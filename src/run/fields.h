@@ -181,8 +181,7 @@ static void demi_field_branch(const dem_world *w, demi_grid *g, const demi_walk 
                       DEMI_STRESS, 6, part);
     }
     if (is_a && c->counts) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
-    if (is_b && c->counts)
-        demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
+    if (is_b && c->counts) demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
 }
 /* Adds all contacts of the world. */
 static void demi_field_contacts(const dem_world *w, demi_grid *g) {

@@ -30,9 +30,8 @@ static void demi_growth_book(dem_world *w, double sag) {
         w->booked.energy[DEMI_E_SHEAR_STORED];
     const double work = demi_sum_energy(w, DEMI_E_ELASTIC) - w->booked.energy[DEMI_E_ELASTIC] +
         shear + sag;
-    w->booked.energy[DEMI_E_GROWTH] += work;
+    demi_work_book(w, DEMI_E_GROWTH, work);
     w->booked.energy[DEMI_E_SHEAR_WORK] += shear;
-    w->booked.throughput += fabs(work);
 }
 /* Closes the account of a step with springs, when its forces are known. Adds the work and losses of
    all domains (work groups) and of walls to the totals, and replaces the stored energies. With a
@@ -55,11 +54,9 @@ static void demi_ledger_book(dem_world *w) {
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
         w->booked.energy[DEMI_E_TOLD] += fabs(demi_sum_energy(w, (int)i));
-    for (i = 0; i < (size_t)w->wall_count;
-         i++) walls += (double)w->walls[i].loads.power*(w->stage.forces_valid
-                                                           ? (double)w->clock.dt : 0);
-    w->booked.energy[DEMI_E_WALLS] += walls;
-    w->booked.throughput += fabs(walls);
+    for (i = 0; i < (size_t)w->wall_count; i++)
+        walls += (double)w->walls[i].loads.power*(w->stage.forces_valid ? (double)w->clock.dt : 0);
+    demi_work_book(w, DEMI_E_WALLS, walls);
     if (w->cell.on && w->stage.forces_valid) demi_cell_book(w, w->cell.rate);
 }
 DEM_API dem_ledger dem_ledger_get(const dem_world *w) {

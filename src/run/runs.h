@@ -104,8 +104,7 @@ static double demi_calm(const dem_world *w, double speed, double *look) {
     double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first grains */
     int i;
     if (w->bodies.count) radius = 0;
-    for (i = 0; i < w->bodies.count; i++)
-        radius += (double)demi_radius(w, i)/w->bodies.count;
+    for (i = 0; i < w->bodies.count; i++) radius += (double)demi_radius(w, i)/w->bodies.count;
     if (!(speed > 0) && g > 0) speed = 0.01*sqrt(2*g*radius);
     *look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(speed, 1e-300);
     return speed;

@@ -386,8 +386,7 @@ static dem_result demi_outflow(dem_world *w) {
             const double x = (double)w->bodies.pos[4*i + k];
             if (w->desc.boundary[k] != DEM_BOUNDARY_OUTFLOW || (x >= lo[k] && x <= hi[k])) continue;
             if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
-            demi_body_take_out(w, i--);
-            w->bodies.balance.left++;
+            demi_body_lose(w, i--, &w->bodies.balance.left);
             break;
         }
     return DEM_OK;
@@ -435,9 +434,7 @@ static dem_result demi_step_move(dem_world *w) {
     w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
     if (demi_response_is(w, DEMI_MIDWAY)) demi_walls_bear(w);
     if (w->desc.ledger) {
-        const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
-        w->booked.energy[DEMI_E_GRAVITY] += work;
-        w->booked.throughput += fabs(work);
+        demi_work_book(w, DEMI_E_GRAVITY, demi_sum_energy(w, DEMI_E_GRAVITY));
         demi_due_book(w);
         if (w->events.n.on) demi_events_due(w);
     }
@@ -639,7 +636,7 @@ static dem_result demi_all_lose(dem_world *h, dem_result (*task)(dem_world *memb
     for (k = 0; k < demi_members(h); k++)
         most = DEMI_MAX(most, !demi_member(h, k)->stage.list_valid);
     if (result == DEM_OK) result = demi_agree(h, &most, 1);
-    if (most > 0) h->stage.list_valid = 0;
+    if (most > 0) demi_list_outdated(h);
     return result;
 }
 /* True if the list is not valid, or a pair that is not in it may have come near. */
@@ -712,9 +709,9 @@ static dem_result demi_motions_begin(dem_world *h) {
     if (!parts) return DEM_OK;
     if (parts & 2 || (parts & 1 && h->team)) {
         const dem_result result = demi_all_agree(h, demi_member_part);
-        h->stage.list_valid = 0;
+        demi_list_outdated(h);
         if (result != DEM_OK) return result;
-    } else if (parts & 1) h->facets_valid = 0;
+    } else if (parts & 1) demi_facets_outdated(h);
     for (i = 0; i < first->wall_count; i++)
         first->walls[i].idle &= demi_wall_waits(&first->walls[i], now);
     return DEM_OK;
@@ -727,7 +724,7 @@ static dem_result demi_step_answer(dem_world *h) {
     const int search = demi_list_due(h);
     if (result == DEM_OK && search) {
         result = demi_all_rebuild(h);
-        if (result == DEM_OK && demi_outgrown(h)) h->stage.dt_valid = 0;
+        if (result == DEM_OK && demi_outgrown(h)) demi_dt_outdated(h);
     }
     if (result == DEM_OK) result = demi_all_forces(h, !search && (!h->team || h->near_due));
     if (result == DEM_OK) result = demi_all(h, demi_member_end);
@@ -782,7 +779,7 @@ static dem_result demi_refresh_answer(dem_world *h) {
     int stale = 0;
     if (result != DEM_OK) return result;
     if (h->stage.pairs_changed) {               /* half-step velocities belong to the old forces */
-        h->stage.primed = 0;
+        demi_halves_outdated(h);
         if (!demi_list_drop(h)) return demi_no_memory(h, "dem_world_step");
     }
     stale = !h->stage.list_valid;
@@ -881,8 +878,7 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
 }
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
-    if (steps < 0)
-        return demi_refuse(w, __func__, "steps is %d, must be >= 0", steps);
+    if (steps < 0) return demi_refuse(w, __func__, "steps is %d, must be >= 0", steps);
     if (steps && demi_unbuilt(w, __func__) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (w->look.under_way)
         return demi_refuse(w, __func__, "called from the function of an output "

@@ -243,7 +243,7 @@ static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_ve
                         f->drawn.orientation);
     demi_put(velocity, v);
     demi_body_start(w, i, velocity, 0, 0);
-    w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
+    demi_speed_book(w, (double)demi_length(v));
     return i;
 }
 /* Counts the drawn grain as inserted. */
@@ -528,8 +528,7 @@ static dem_result demi_outlets_run(dem_world *w) {
         if (!takes) continue;
         if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
         demi_outlet_book(w, takes, i);
-        demi_body_take_out(w, i--);
-        w->bodies.balance.left++;
+        demi_body_lose(w, i--, &w->bodies.balance.left);
     }
     return DEM_OK;
 }

@@ -170,11 +170,8 @@ DEM_API int dem_bodies_remove(dem_world *w, const dem_selection *s) {
         count = -1;
     }
     /* backwards: the last body, which takes the index, has been looked at */
-    for (i = w->bodies.count - 1; i >= 0 && count > 0; i--) {
-        if (!marks[i]) continue;
-        demi_body_take_out(w, i);
-        w->bodies.balance.removed++;
-    }
+    for (i = w->bodies.count - 1; i >= 0 && count > 0; i--)
+        if (marks[i]) demi_body_lose(w, i, &w->bodies.balance.removed);
     demi_free(w, marks);
     if (count > 0) demi_scene_changed(w);
     return count;

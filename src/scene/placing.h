@@ -314,8 +314,7 @@ static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) 
             for (x = f[0]; x <= l[0]; x++) {
                 const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
                 for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++)
-                    if (demi_wall_distance(wall, wall->cell_items[k], at, radius) < touch)
-                        return 0;
+                    if (demi_wall_distance(wall, wall->cell_items[k], at, radius) < touch) return 0;
             }
     return 1;
 }

@@ -182,8 +182,7 @@ static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_size
     demi_size_table *t;
     double lo, hi;
     int i;
-    if (count < 0)
-        return demi_refuse(w, call, "count is %d, must be >= 0", count);
+    if (count < 0) return demi_refuse(w, call, "count is %d, must be >= 0", count);
     if (!demi_size_ends(w, call, d, &lo, &hi)) return DEM_ERROR_ARGUMENT;
     t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
     if (!t) return demi_no_memory(w, call);
@@ -227,8 +226,7 @@ DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_co
         all += share = d->by_count ? number : mass;
         if (!(number > 0)) continue;
         amount[n] = share;
-        radius[n++] = (dem_real)(w->desc.planar ? sqrt(mass/number)
-                                                : demi_cube_root(mass/number));
+        radius[n++] = (dem_real)(w->desc.planar ? sqrt(mass/number) : demi_cube_root(mass/number));
     }
     for (i = 0; i < n; i++) amount[i] /= all;
     demi_free(w, t);

@@ -81,8 +81,7 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
                         if (q < domain->walls) continue;
                         away = demi_wall_distance(wall, element, at, near_by);
                         if (away < near_by)
-                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift,
-                                            cell);
+                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift, cell);
                     }
                 }
     }
@@ -249,12 +248,10 @@ static int demi_wall_sums_room(dem_world *w) {
 /* Allocates the forces of all entries that `cross` can hold. */
 static int demi_cross_reserve(dem_world *w) {
     const size_t entries = (size_t)w->domain_count*(size_t)w->cross.stride;
-    const int ok = DEMI_GROW(w, w->cross_incoming, entries) &&
-                   DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1)) &&
-                   (!demi_exchanges(w) ||
-                    DEMI_GROW(w, w->cross_rate,
-                              (size_t)w->bodies.real_count*(entries + DEMI_LANES + 1)));
-    return ok;
+    const size_t reals = (size_t)w->bodies.real_count*(entries + DEMI_LANES + 1);
+    return DEMI_GROW(w, w->cross_incoming, entries) &&
+        DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1)) &&
+        (!demi_exchanges(w) || DEMI_GROW(w, w->cross_rate, reals));
 }
 /* Returns the work group of a body. */
 static int demi_domain_of(const dem_world *w, int body) {

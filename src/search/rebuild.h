@@ -111,7 +111,7 @@ static void demi_effects(dem_world *w) {
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count && !(w->effects.clustered && w->bodies.shaped);
     if (demi_reach_free(w))                     /* velocities may be new since the last step */
-        w->booked.speed_max = DEMI_MAX(w->booked.speed_max, demi_fastest(w));
+        demi_speed_book(w, demi_fastest(w));
     w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
@@ -327,7 +327,7 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     const int own = w->desc.law ? w->desc.law_memory : -1;
     dem_real old[DEMI_MEMORY], *fresh = 0;
     int d, k;
-    if (w->filed.stride != was->memory) w->filed.count = 0;    /* invalid: of other laws */
+    if (w->filed.stride != was->memory) demi_filed_forget(w);
     if (!DEMI_GROW(w, fresh, (size_t)w->filed.count*to)) return 0;
     for (k = 0; k < w->filed.count; k++)
         demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from, fresh + (size_t)k*to);
@@ -513,7 +513,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
         return demi_no_memory(w, call);
     demi_quiet_mark(w);
     demi_slots_release(w);
-    w->filed.count = 0;
+    demi_filed_forget(w);
     w->stage.skin_chosen = w->stage.near_chosen = 0;
     demi_lists_made(w);
     return DEM_OK;

@@ -494,7 +494,7 @@ static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const ch
         demi_grain_unpack(w, w->bodies.slot_index[slot], &from);
         seen[slot] = 1;
     }
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     demi_filed_unpack(w, add, &head, from);
 }
 /* Adds the slots of grains inserted since the last collection to the world, without bodies yet. */
@@ -585,7 +585,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     }
     for (k = 0; k < DEMI_DOMAINS; k++)          /* those of the slabs take over */
         w->domains[k].kept = w->domains[k].contacts = 0;
-    w->filed.count = 0;
+    demi_filed_forget(w);
     memset(w->filed.start, 0, ((size_t)w->filed.rows + 2)*sizeof(int32_t));
     memset(*seen, 0, (size_t)s->slots + 1);
     return DEM_OK;
@@ -615,11 +615,7 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         s->told = s->slots;
         /* not in any slab: it left through an outflow boundary or an outlet */
         for (i = w->bodies.count - 1; i >= 0; i--)
-            if (!seen[w->bodies.slot[i]]) {
-                const double removed = w->booked.removed;
-                demi_body_take_out(w, i);
-                w->booked.removed = removed;
-            }
+            if (!seen[w->bodies.slot[i]]) demi_body_take_out(w, i);
         /* counts of the slabs replace those of the world */
         w->bodies.balance.inserted = s->head.bodies.balance.inserted;
         w->bodies.balance.removed = s->head.bodies.balance.removed;

@@ -76,7 +76,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
             if ((s->slabs[k].index == 0 || at[s->axis] >= s->borders[s->slabs[k].index]) &&
                 (s->slabs[k].index == s->count - 1 ||
                  at[s->axis] < s->borders[s->slabs[k].index + 1])) owner = &s->slabs[k];
-        h->stage.list_valid = 0;
+        demi_list_outdated(h);
         result = demi_slabs_feed_room(s, owner, x[n], r);
     }
     if (result != DEM_OK) { f->random = random; return -(int)result; }
@@ -97,7 +97,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     }
     s->known[s->slots++] = 1;
     h->bodies.balance.inserted++;
-    h->booked.speed_max = DEMI_MAX(h->booked.speed_max, (double)demi_length(v[n]));
+    demi_speed_book(h, (double)demi_length(v[n]));
     /* forces may act on it */
     if (h->desc.force || h->desc.body_force || demi_reach_of(h, 1) > 0) demi_scene_changed(h);
     demi_feed_count(f);

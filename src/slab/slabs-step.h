@@ -589,7 +589,7 @@ static dem_result demi_slabs_rebuild(dem_world *h) {
     dem_slabs *s = (dem_slabs *)(void *)h;
     const double skin_before = h->margin.skin_auto;
     dem_result result;
-    h->stage.list_valid = 0;
+    demi_list_outdated(h);
     demi_slabs_surfaces(s);
     result = demi_slabs_try(s, demi_slab_drop);
     if (s->count > 1) {

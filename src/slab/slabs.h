@@ -170,19 +170,17 @@ static int demi_grain_append(dem_world *w, const char **from) {
     demi_grain_unpack(w, i, from);
     w->bodies.slot_index[w->bodies.slot[i]] = i;
     if (demi_shape_of(w, i)) w->bodies.shaped++;
-    w->lll_valid = 0;
+    demi_lll_outdated(w);
     return i;
 }
 /* Removes a body from a slab that stays in the scene: another slab owns it. Its generation and the
    totals of the scene do not change, and its slot does not become free. */
 static void demi_grain_forget(dem_world *w, int i) {
     const int slot = (int)w->bodies.slot[i], pending = w->bodies.slot_pending;
-    const double removed = w->booked.removed;
     demi_body_take_out(w, i);
     w->bodies.slot_pending = pending;
     w->bodies.slot_index[slot] = -1;
     w->bodies.slot_generation[slot]--;
-    w->booked.removed = removed;
     w->bodies.ghost[slot] = 0;
 }
 

@@ -145,7 +145,7 @@ static int demi_wall_remains(const dem_world *w, const demi_wall *next, int plac
    and the numbers of their features change: contacts are followed by direction once. */
 static void demi_surfaces_outdated(dem_world *w) {
     int d, k;
-    w->facets_valid = 0;
+    demi_facets_outdated(w);
     for (d = 0; d < DEMI_DOMAINS; d++)
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
