@@ -92,9 +92,9 @@
        >>groups            named sets of bodies, selections
        >>feed              feeds and outlets
      drive/ - what is led from outside while a scene runs
+       >>rails             bodies with locked axes and prescribed velocities
        >>steering          new motions and belt speeds of walls, and the forces that follow
        >>servo             walls led to a target load
-       >>rails             bodies with locked axes and prescribed velocities
        >>growth            bodies that change their size
      run/ - the time step, the step, runs; a world begins and ends
        >>advice            the time step: what is chosen and what is too large
@@ -2966,10 +2966,9 @@ typedef struct dem_ledger {
     double removed;                         /* kinetic energy of removed bodies */
     double throughput;                      /* sum of the magnitudes of what was supplied */
     /* supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or
-       walls are added, moved or removed between steps, materials change. Three amounts are in the
-       residual: what springs held on a grain that an outlet or an outflow boundary removes; what
-       springs gain when two walls in one place part below a grain, because then both act where
-       one did; what a contact holds when it leaves the range of its law. */
+       walls are added, moved or removed between steps, materials change. In the residual are: what
+       springs hold on a grain that an outlet or outflow boundary removes, what they gain when two
+       walls in one place part below a grain, what a contact holds as it leaves its law's range. */
     double growth;
     double residual;
     double unknown;                         /* > 0: the user-defined law created energy */
@@ -10733,8 +10732,7 @@ static void demi_prime_body(dem_world *w, int i) {
         s.half[k] = turning ? s.v[k] - s.f[k]*s.inv*h : s.v[k];
     }
     if (w->bodies.shaped && w->bodies.shape[i])
-        demi_put(w->bodies.angular + 4*i,
-                 demi_sub(demi_angular_of(w, i),
+        demi_put(w->bodies.angular + 4*i, demi_sub(demi_angular_of(w, i),
                           demi_scale(demi_at(w->bodies.torque + 4*i),
                                      demi_response_is(w, DEMI_MIDWAY) ? 0 : h)));
 }
@@ -10813,8 +10811,7 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
 /* Free rotation by [FIN92]. Half an Euler step gives q in the middle of the step; L and that q give
    w there; a whole step with that w gives q at the end. [RUB15] eq 17 to 21 uses it with w instead
    of L, which is the same for spheroids that do not spin about their axis. */
-static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
-                                    dem_real h) {
+static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv, dem_real h) {
     const dem_quat start = *q;
     dem_vec3 m = dem_quat_unrotate(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     dem_quat mid, by;
@@ -16007,10 +16004,8 @@ static int demi_walled_note(dem_world *w) {
    arrays that have grown stay valid. */
 static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride;
-    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, list->a, n) &&
-                   DEMI_GROW(w, list->b, n) &&
-                   DEMI_GROW(w, list->place, n) &&
-                   DEMI_GROW(w, list->image, n);
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, list->a, n) && DEMI_GROW(w, list->b, n) &&
+                   DEMI_GROW(w, list->place, n) && DEMI_GROW(w, list->image, n);
     if (ok) list->stride = stride;
     return ok;
 }
@@ -16022,16 +16017,12 @@ static int demi_many_species(const dem_world *w) {
 /* As demi_list_reserve, for a pruned neighbour list. */
 static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
-    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) &&
-                   DEMI_GROW(w, near->b, n) &&
-                   DEMI_GROW(w, near->k, n) &&
-                   DEMI_GROW(w, near->image, n) &&
-                   DEMI_GROW(w, near->balls,
-                             !w->effects.clustered && w->effects.unlike ? n : 0) &&
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) && DEMI_GROW(w, near->b, n) &&
+                   DEMI_GROW(w, near->k, n) && DEMI_GROW(w, near->image, n) &&
+                   DEMI_GROW(w, near->balls, !w->effects.clustered && w->effects.unlike ? n : 0) &&
                    (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
                     DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
-                    DEMI_GROW(w, near->hit, n))) &&
-                   DEMI_GROW(w, near->memory, m) &&
+                    DEMI_GROW(w, near->hit, n))) && DEMI_GROW(w, near->memory, m) &&
                    (w->effects.uniform || (demi_many_species(w)
                        ? DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS)
                        : DEMI_GROW(w, near->row, n)));
@@ -16042,10 +16033,8 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
 static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, w->wall_body, n) &&
-                   DEMI_GROW(w, w->wall_id, n) &&
-                   DEMI_GROW(w, w->wall_shift, 3*n) &&
-                   DEMI_GROW(w, w->wall_cell, n) &&
-                   DEMI_GROW(w, w->wall_gap, n) &&
+                   DEMI_GROW(w, w->wall_id, n) && DEMI_GROW(w, w->wall_shift, 3*n) &&
+                   DEMI_GROW(w, w->wall_cell, n) && DEMI_GROW(w, w->wall_gap, n) &&
                    DEMI_GROW(w, w->wall_element, n);
     if (ok) w->wall_stride = stride;
     return ok;
@@ -16136,8 +16125,7 @@ static int demi_touching_reserve(dem_world *w) {
         n += (size_t)most;
         if (n > (size_t)INT_MAX/8) return 0;
     }
-    w->touching_valid = DEMI_GROW(w, w->touching, n) &&
-                        DEMI_GROW(w, w->touching_links, n) &&
+    w->touching_valid = DEMI_GROW(w, w->touching, n) && DEMI_GROW(w, w->touching_links, n) &&
                         DEMI_GROW(w, w->touching_table, 4*n);
     return w->touching_valid;
 }
@@ -25025,8 +25013,7 @@ DEM_INLINE void demi_kept_answer_one(demi_kept_tile *DEMI_RESTRICT t, int q, int
     if (rolls) moment = demi_add(moment, demi_scale(demi_row(t->rows.moment, q), t->grip[q]));
     demi_row_put(t->rows.force, q, force);
     demi_row_put(t->rows.moment, q, moment);
-    demi_row_put(t->rows.torque[0], q,
-                 demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
+    demi_row_put(t->rows.torque[0], q, demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
                                      demi_add(force, demi_scale(push, t->outset[q]))), moment));
     demi_row_put(t->rows.torque[1], q,
                  demi_scale(demi_add(demi_cross(demi_rows_at(&t->arm[1], q), force), moment), -1));
@@ -25198,11 +25185,9 @@ static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
     const dem_vec3 moment = demi_cross(far, aside);
     demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
     demi_row_put(t->rows.moment, q, demi_add(demi_row(t->rows.moment, q), moment));
-    demi_row_put(t->rows.torque[0], q,
-                 demi_add(demi_row(t->rows.torque[0], q),
+    demi_row_put(t->rows.torque[0], q, demi_add(demi_row(t->rows.torque[0], q),
                           demi_cross(demi_add(c->arm_a, arm), aside)));
-    demi_row_put(t->rows.torque[1], q,
-                 demi_sub(demi_row(t->rows.torque[1], q),
+    demi_row_put(t->rows.torque[1], q, demi_sub(demi_row(t->rows.torque[1], q),
                           demi_add(demi_cross(c->arm_b, aside), moment)));
 }
 /* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
@@ -30083,322 +30068,6 @@ static int demi_outlets_share(dem_world *slab, const dem_world *from, int first)
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>steering
-   New motions of walls, and new velocities of belts, during a run. After most changes of the scene
-   the next step computes all forces again, from the velocities of the full step. A program that
-   leads a wall sets its motion at every step, or every few steps. To make this cheap, only forces
-   of contacts with this wall are computed again: those with the old velocity are subtracted from
-   the forces on grains, those with the new velocity are added. Sums thus differ by rounding. This
-   part writes the motions and surface velocities (`glide`, `glides`) of walls, and the forces and
-   half-step velocities of grains that touch such a wall.
-   --------------------------------------------------------------------------------------------- */
-
-/* A program leads a wall if at most this number of steps lie between two motions: eight, and half a
-   step for rounding errors of times. */
-#define DEMI_LED 8.5
-
-/* Evaluates a tile of contacts with a wall, adds `sign` times their forces to those of the grains,
-   and updates the half-step velocities of these grains. Contact histories do not change. Empties
-   the tile. */
-static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
-    int q;
-    demi_kept_tile_answer(w, r, t);
-    for (q = 0; q < t->count; q++) {
-        demi_kept *c = t->contact[q];
-        dem_vec3 force, torque;
-        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        c->force = demi_kept_own(t, q, &torque);
-        force = demi_row(t->rows.force, q);
-        torque = demi_row(t->rows.torque[0], q);
-        if (w->desc.planar) force.z = torque.x = torque.y = 0;
-        demi_force_add(w->bodies.force + 4*c->a, demi_scale(force, sign));
-        demi_force_add(w->bodies.torque + 4*c->a, demi_scale(torque, sign));
-        if (w->stage.primed) demi_prime_body(w, c->a);
-    }
-    t->count = t->lifted = t->shaped = 0;
-}
-/* Adds `sign` times the forces of all contacts with a wall to those of the grains. */
-static void demi_steer(dem_world *w, int wall, dem_real sign) {
-    DEMI_ALIGNED demi_kept_tile tile;
-    demi_run run = demi_run_begin(w, 0);
-    int d, k, known;
-    if (!w->desc.law) demi_run_laws(w, &run, 0);
-    demi_kept_tile_begin(&tile, &run, DEMI_TILE);
-    for (d = 0; d < w->domain_count; d++) {
-        known = demi_kept_rows_begin(w, d, w->domains[d].kept);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
-            if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
-            demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
-            if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
-        }
-        if (tile.count) demi_steer_tile(w, &run, &tile, sign);
-        if (!known) w->domains[d].coefs = 0;    /* other contacts have no row yet */
-    }
-}
-/* Call this before the velocity of a wall's surface changes, and demi_wall_after after it. If the
-   forces are valid, the first call subtracts those of the wall's contacts and the second adds them
-   with the new velocity. Otherwise the next step computes all forces again. So it does with
-   impulses, with rails (their reactions depend on these forces) and with laws that exchange
-   user-defined numbers. */
-static void demi_wall_before(dem_world *w, int wall) {
-    demi_finish(w);                             /* the open half kick belongs to the old forces */
-    if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
-        !w->stage.list_valid || w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
-        demi_forces_outdated(w);
-    else demi_steer(w, wall, -1);
-}
-/* Call this after the velocity of a wall's surface has changed: see demi_wall_before. */
-static void demi_wall_after(dem_world *w, int wall) {
-    if (w->stage.forces_valid) demi_steer(w, wall, 1);
-}
-
-DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
-                                                 dem_vec3 *velocity) {
-    int i;
-    if (demi_null_look(world, __func__, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
-    i = demi_wall_find((dem_world *)world, __func__, id);
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    *velocity = demi_rotate(world->walls[i].pose.rotation, world->walls[i].glide);
-    return DEM_OK;
-}
-DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
-    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, __func__, id);
-    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
-    if (!wall) return DEM_ERROR_ARGUMENT;
-    if (!demi_place(velocity))
-        return demi_refuse(w, __func__, "velocity of wall %d is (%g, %g, "
-                           "%g) m/s, must be finite and within %g m/s; check how it was computed",
-                           (int)id.id, (double)velocity.x, (double)velocity.y, (double)velocity.z,
-                           DEMI_FARTHEST);
-    if (w->desc.planar && fabs((double)velocity.z) > 0)
-        return demi_refuse(w, __func__, "velocity of wall %d has the z "
-                           "component %g m/s, must be 0 in a planar world, where no grain moves "
-                           "along z", (int)id.id, (double)velocity.z);
-    demi_wall_before(w, i);
-    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
-    wall->glides = demi_dot(velocity, velocity) > 0;
-    demi_wall_after(w, i);
-    demi_built(w, __func__);
-    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
-    return DEM_OK;
-}
-
-DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
-    if (demi_null_look(world, __func__, pose, "pose")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, __func__, id);
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    *pose = world->walls[i].pose;
-    return DEM_OK;
-}
-/* True if the time step stays right for a wall with a new motion: the wall is not faster than the
-   impacts for which the step was chosen, and moves by less than a tenth of the smallest radius in a
-   step. */
-static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
-    const double v = demi_pose_speed(wall);
-    return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
-        (!(v > 0) || w->desc.dt > 0 || v <= w->clock.assumed_speed);
-}
-/* True if a wall stays where it is when its new motion `to` begins. A rotation may start there with
-   rounding errors. A motion with a phase, by a table or by a function may begin elsewhere. */
-static int demi_wall_stays(const demi_wall *from, const demi_wall *to) {
-    return to->motion.kind == DEM_MOTION_ROTATING ||
-        (!memcmp(&from->pose.position, &to->pose.position, sizeof to->pose.position) &&
-         !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
-}
-/* True if a program leads a wall that stays: its old motion began at most DEMI_LED steps ago, or
-   has yet to begin. */
-static int demi_wall_led(const dem_world *w, const demi_wall *from) {
-    return w->clock.time - from->motion.start <= DEMI_LED*(double)w->clock.dt;
-}
-DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
-    if (demi_null(w, __func__, motion, "motion")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, __func__, id);
-    demi_wall next;
-    const void *rows;
-    void *old;
-    int dropped, remains;
-    dem_result result;
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
-    if (result != DEM_OK) return result;
-    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
-       decides which of its periodic images are at rest relative to it */
-    remains = demi_wall_stays(&w->walls[i], &next) && demi_wall_remains(w, &next, i) &&
-        (!w->repeating || (!demi_motion_turns(&w->walls[i].motion) &&
-                           !demi_motion_turns(&next.motion)));
-    dropped = remains || demi_list_drop(w);
-    rows = dropped ? w->walls[i].motion.table : next.motion.table;
-    memcpy(&old, &rows, sizeof old);
-    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
-    if (!dropped) return demi_no_memory(w, __func__);
-    if (!remains) demi_surfaces_outdated(w);
-    if (!remains || !demi_wall_led(w, &w->walls[i])) demi_forces_outdated(w);
-    demi_wall_before(w, i);
-    w->walls[i] = next;
-    demi_wall_after(w, i);
-    demi_built(w, __func__);
-    if (!remains || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
-    return DEM_OK;
-}
-
-/* ---------------------------------------------------------------------------------------------
-   >>servo
-   Servo walls (DEM_MOTION_SERVO): before each step the speed of the wall is chosen from the force
-   that grains exert on it, so that the force approaches a target. The wall has no inertia. Owns
-   `servo` of walls; reads their loads and the persistent contacts of the last step. In a team the
-   sums extend over all members, in their order, and the walls of the first member move.
-
-   The law. Let K and C be the sums of normal stiffness and damping over the contacts of the wall, F
-   the present force, T the target, v and u the speeds towards the grains in the coming and in the
-   last step:
-       K dt (v - b u) + C (v - u) = a (T - F),   |v| at most the largest speed,
-   a = DEMI_SERVO_GAIN, b = DEMI_SERVO_KEPT. With C = b = 0 this is the servo of the triaxial cell
-   of YADE, which moves by (1 - damping)(T - F)/K in a step (TriaxialStressController: K is summed
-   over the contacts of the wall), and that of PFC, v = a (T - F)/(k N dt) for N contacts of
-   stiffness k. The terms of C make up for the change of the damping force, C (v - u): without them
-   the servo is unstable from step to step if C > K dt/a. The term of b makes it a PI controller.
-   While the target changes at a rate R, the error is R K dt (1 - b)/(a B) on a bed of stiffness B.
-   Stability. While grains rest, the error of contacts without damping obeys z^2 - (1 + b - a) z + b
-   = 0, whose roots are inside the unit circle if a < 2 + 2 b [Jury]: contacts may be 7 times as
-   stiff as K says, and four times as damped as C says. If grains move, the wall acts on them as a
-   dashpot K dt (1 - b)/a and a mass (b K dt + C) dt/a, which never supply energy. The mass is of
-   the order dt/t_c of that of the grains in contact.
-   --------------------------------------------------------------------------------------------- */
-#define DEMI_SERVO_GAIN 0.5        /* a; below its limit, since K grows with new contacts */
-#define DEMI_SERVO_KEPT 0.9        /* b */
-
-/* Returns the force along the direction of wall `of` that wall i exerts on the grains of w, N; 0 if
-   it is not part of the same piston. first: the world whose walls move. */
-static double demi_servo_force_of(const dem_world *first, const dem_world *w, int of, int i) {
-    const demi_wall *walls = first->walls;
-    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_alike(&walls[i], &walls[of])) return 0;
-    return -(double)demi_dot(w->walls[i].loads.force, demi_unit(walls[of].motion.velocity));
-}
-/* Returns the sum over the piston. */
-static double demi_servo_force(const dem_world *first, const dem_world *w, int of) {
-    double sum = 0;
-    int i;
-    for (i = 0; i < w->wall_count; i++) sum += demi_servo_force_of(first, w, of, i);
-    return sum;
-}
-/* Books the work that follows from a change of the wall's speed, m/s. The step has booked F v dt
-   with the speed before, but half of the impulse F dt acts after the change. */
-static void demi_servo_book(dem_world *w, const dem_world *first, int of, double change) {
-    int i;
-    for (i = 0; i < w->wall_count; i++) {
-        const double work = demi_servo_force_of(first, w, of, i)*change*(double)w->clock.dt/2;
-        w->walls[i].loads.work += work;
-        if (w->desc.ledger) w->booked.energy[DEMI_E_WALLS] += work;
-    }
-}
-/* `part` of `sum` in demi_team: that force, and the sums of stiffness and damping over the contacts
-   of the group, as the built-in laws have them or by desc.law_stiffness. A body that is not a
-   sphere counts with its whole mass, so its damping is an upper bound. */
-enum { DEMI_SERVO_FORCE, DEMI_SERVO_STIFFNESS, DEMI_SERVO_DAMPING, DEMI_SERVO_SUMS };
-static void demi_servo_part(const dem_world *w, int of, double *out) {
-    const dem_world *first = w->team ? w->team->members[0] : w;
-    const demi_wall *walls = first->walls;
-    int d;
-    out[DEMI_SERVO_FORCE] = demi_servo_force(first, w, of);
-    out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
-        for (; c < end && w->domains[d].walls; c++) {
-            const double slope = (double)c->slope;
-            dem_real coef[DEMI_COEFS], root[2];
-            demi_stiffness s;
-            /* a body that has changed slab has left its contacts there until forces are computed */
-            if (c->b >= 0 || demi_is_ghost(w, c->a) ||
-                !demi_walls_alike(&walls[c->wall], &walls[of]) ||
-                (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
-            demi_kept_coefs(w, c, coef, root);
-            coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
-            s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
-            if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
-            if (w->desc.law && w->desc.law_stiffness > 0) s.k = (double)w->desc.law_stiffness;
-            out[DEMI_SERVO_STIFFNESS] += s.k*slope*slope*(double)c->lift;
-            out[DEMI_SERVO_DAMPING] += s.c*slope*(double)c->share;
-        }
-    }
-}
-/* Sums over all members, see `sum` of demi_team. */
-static dem_result demi_servo_sum(dem_world *h, int of, double *sums) {
-    if (h->team) return h->team->sum(h, demi_servo_part, of, sums, DEMI_SERVO_SUMS);
-    demi_servo_part(h, of, sums);
-    return DEM_OK;
-}
-/* Chooses the speed of wall w for the step that begins now. */
-static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double *sums) {
-    const dem_motion *m = &wall->motion;
-    const double dt = (double)h->clock.dt, most = (double)demi_length(m->velocity);
-    const double far = m->travel > 0 ? (double)m->travel : DEMI_FARTHEST;
-    dem_servo *s = &wall->servo;
-    double push, gives;
-    s->travel += s->speed*(h->clock.time - s->time);
-    s->time = h->clock.time;
-    s->target = demi_servo_target(m, s->time);
-    s->force = sums[DEMI_SERVO_FORCE];
-    s->stiffness = sums[DEMI_SERVO_STIFFNESS];
-    s->damping = sums[DEMI_SERVO_DAMPING];
-    push = DEMI_SERVO_GAIN*(s->target - s->force) +
-        (DEMI_SERVO_KEPT*s->stiffness*dt + s->damping)*s->speed;
-    gives = s->stiffness*dt + s->damping;
-    s->speed = fabs(push) < most*gives ? push/gives : push > 0 ? most : push < 0 ? -most : 0;
-    if (fabs(s->travel + s->speed*dt) > far)
-        s->speed = ((s->speed > 0 ? far : -far) - s->travel)/dt;
-}
-/* Returns the first wall of the piston of wall i. */
-static int demi_servo_leader(const dem_world *first, int i) {
-    int k = 0;
-    while (k < i && (first->walls[k].kind == DEMI_WALL_NONE ||
-                     !demi_walls_alike(&first->walls[k], &first->walls[i]))) k++;
-    return k;
-}
-/* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */
-static dem_result demi_servos_lead(dem_world *h) {
-    dem_world *first = demi_member(h, 0);
-    double sums[DEMI_SERVO_SUMS], before;
-    dem_result result = DEM_OK;
-    int i, k;
-    for (i = 0; i < first->wall_count && result == DEM_OK; i++) {
-        demi_wall *wall = &first->walls[i];
-        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_SERVO ||
-            h->clock.time < wall->motion.start) continue;
-        k = demi_servo_leader(first, i);
-        if (k != i) { wall->servo = first->walls[k].servo; continue; }
-        result = demi_servo_sum(h, i, sums);
-        if (result != DEM_OK) break;
-        before = wall->servo.speed;
-        demi_servo_choose(h, wall, sums);
-        for (k = 0; k < demi_members(h); k++)
-            demi_servo_book(demi_member(h, k), first, i, wall->servo.speed - before);
-    }
-    return result;
-}
-/* Returns the state of a servo wall at the present time. */
-static dem_servo demi_servo_now(const dem_world *w, int wall) {
-    const dem_motion *m = &w->walls[wall].motion;
-    dem_servo s = w->walls[wall].servo;
-    s.travel += w->clock.time > s.time ? s.speed*(w->clock.time - s.time) : 0;
-    s.target = w->clock.time < m->start ? 0 : demi_servo_target(m, w->clock.time);
-    s.force = demi_servo_force(w, w, wall);
-    return s;
-}
-DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_servo *servo) {
-    int i;
-    if (demi_null_look(world, __func__, servo, "servo")) return DEM_ERROR_ARGUMENT;
-    i = demi_wall_find((dem_world *)world, __func__, id);
-    if (i < 0) return DEM_ERROR_ARGUMENT;
-    if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
-        return demi_refuse(world, __func__, "the motion of wall %d is not "
-                           "DEM_MOTION_SERVO; set it with dem_wall_motion_set", (int)id.id);
-    *servo = demi_servo_now(world, i);
-    return DEM_OK;
-}
-
-/* ---------------------------------------------------------------------------------------------
    >>rails
    Bodies whose axes are locked (dem_body_rail_set). When all forces of a step are known, the
    reaction of each rail is added to the force and torque of its body. It is such that the next kick
@@ -30737,11 +30406,35 @@ static void demi_rails_drop(dem_world *w, dem_body body) {
     }
     w->rail_count = left;
 }
-DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
+/* Gives a body the velocity and spin that its rail prescribes. Returns 0 if memory runs out. */
+static int demi_rail_lead(dem_world *w, demi_rail *r) {
+    const int of = demi_rail_wall(w, r), axes = r->state.desc.axes;
     dem_real v[3], s[3], own[6];
     dem_body_state state;
+    int k, ok;
+    demi_rail_wants(r, of < 0 ? 0 : &w->walls[of].pose, r->at, v, s);
+    dem_body_get(w, r->body, &state);
+    demi_put(own, state.velocity);
+    demi_put(own + 3, state.spin);
+    for (k = 0; k < 6; k++) if (axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
+    state.velocity = demi_at(own);
+    state.spin = demi_at(own + 3);
+    r->state.desc.axes = 0;                     /* dem_body_set leaves locked axes as they are */
+    ok = dem_body_set(w, r->body, &state) == DEM_OK;
+    r->state.desc.axes = axes;
+    return ok;
+}
+/* A wall with a new motion takes its bodies along at once. Returns 0 if memory runs out. */
+static int demi_rails_lead(dem_world *w, int wall) {
+    int k, ok = 1;
+    for (k = 0; k < w->rail_count && ok; k++)
+        if (demi_rail_wall(w, &w->rails[k]) == wall && demi_rail_body(w, &w->rails[k]) >= 0)
+            ok = demi_rail_lead(w, &w->rails[k]);
+    return ok;
+}
+DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
     demi_rail *r;
-    int i, k, of;
+    int i;
     if (demi_null(w, __func__, d, "desc")) return DEM_ERROR_ARGUMENT;
     i = demi_body_index(w, __func__, body);
     if (i < 0 || demi_rows_check(w, __func__, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
@@ -30767,15 +30460,7 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     r->body = body;
     r->state.desc = *d;
     r->at = r->seen = demi_at(w->bodies.pos + 4*i);
-    of = demi_rail_wall(w, r);
-    demi_rail_wants(r, of < 0 ? 0 : &w->walls[of].pose, r->at, v, s);
-    dem_body_get(w, body, &state);
-    demi_put(own, state.velocity);
-    demi_put(own + 3, state.spin);
-    for (k = 0; k < 6; k++) if (d->axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
-    state.velocity = demi_at(own);
-    state.spin = demi_at(own + 3);
-    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, __func__);
+    if (!demi_rail_lead(w, r)) return demi_no_memory(w, __func__);
     w->rail_count++;
     return DEM_OK;
 }
@@ -30827,6 +30512,322 @@ static dem_result demi_rails_whole(dem_world *w, const char *call) {
     return demi_refuse(w, call, "%d bodies are on rails (dem_body_rail_set), whose state slabs do "
                        "not pass on; use threads, or walls instead of these bodies",
                        demi_rails_in_force(w));
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>steering
+   New motions of walls, and new velocities of belts, during a run. After most changes of the scene
+   the next step computes all forces again, from the velocities of the full step. A program that
+   leads a wall sets its motion at every step, or every few steps. To make this cheap, only forces
+   of contacts with this wall are computed again: those with the old velocity are subtracted from
+   the forces on grains, those with the new velocity are added. Sums thus differ by rounding. This
+   part writes the motions and surface velocities (`glide`, `glides`) of walls, and the forces and
+   half-step velocities of grains that touch such a wall.
+   --------------------------------------------------------------------------------------------- */
+
+/* A program leads a wall if at most this number of steps lie between two motions: eight, and half a
+   step for rounding errors of times. */
+#define DEMI_LED 8.5
+
+/* Evaluates a tile of contacts with a wall, adds `sign` times their forces to those of the grains,
+   and updates the half-step velocities of these grains. Contact histories do not change. Empties
+   the tile. */
+static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
+    int q;
+    demi_kept_tile_answer(w, r, t);
+    for (q = 0; q < t->count; q++) {
+        demi_kept *c = t->contact[q];
+        dem_vec3 force, torque;
+        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
+        c->force = demi_kept_own(t, q, &torque);
+        force = demi_row(t->rows.force, q);
+        torque = demi_row(t->rows.torque[0], q);
+        if (w->desc.planar) force.z = torque.x = torque.y = 0;
+        demi_force_add(w->bodies.force + 4*c->a, demi_scale(force, sign));
+        demi_force_add(w->bodies.torque + 4*c->a, demi_scale(torque, sign));
+        if (w->stage.primed) demi_prime_body(w, c->a);
+    }
+    t->count = t->lifted = t->shaped = 0;
+}
+/* Adds `sign` times the forces of all contacts with a wall to those of the grains. */
+static void demi_steer(dem_world *w, int wall, dem_real sign) {
+    DEMI_ALIGNED demi_kept_tile tile;
+    demi_run run = demi_run_begin(w, 0);
+    int d, k, known;
+    if (!w->desc.law) demi_run_laws(w, &run, 0);
+    demi_kept_tile_begin(&tile, &run, DEMI_TILE);
+    for (d = 0; d < w->domain_count; d++) {
+        known = demi_kept_rows_begin(w, d, w->domains[d].kept);
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
+            demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
+            if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
+        }
+        if (tile.count) demi_steer_tile(w, &run, &tile, sign);
+        if (!known) w->domains[d].coefs = 0;    /* other contacts have no row yet */
+    }
+}
+/* Call this before the velocity of a wall's surface changes, and demi_wall_after after it. If the
+   forces are valid, the first call subtracts those of the wall's contacts and the second adds them
+   with the new velocity. Otherwise the next step computes all forces again. So it does with
+   impulses, with rails (their reactions depend on these forces) and with laws that exchange
+   user-defined numbers. */
+static void demi_wall_before(dem_world *w, int wall) {
+    demi_finish(w);                             /* the open half kick belongs to the old forces */
+    if (!demi_response_is(w, DEMI_LASTING) || w->rail_count || demi_exchanges(w) ||
+        !w->stage.list_valid || w->stage.pairs_changed || w->stage.moved || !w->stage.forces_valid)
+        demi_forces_outdated(w);
+    else demi_steer(w, wall, -1);
+}
+/* Call this after the velocity of a wall's surface has changed: see demi_wall_before. */
+static void demi_wall_after(dem_world *w, int wall) {
+    if (w->stage.forces_valid) demi_steer(w, wall, 1);
+}
+
+DEM_API dem_result dem_wall_surface_velocity_get(const dem_world *world, dem_wall id,
+                                                 dem_vec3 *velocity) {
+    int i;
+    if (demi_null_look(world, __func__, velocity, "velocity")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *velocity = demi_rotate(world->walls[i].pose.rotation, world->walls[i].glide);
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_surface_velocity_set(dem_world *w, dem_wall id, dem_vec3 velocity) {
+    if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
+    demi_wall *wall = i < 0 ? 0 : &w->walls[i];
+    if (!wall) return DEM_ERROR_ARGUMENT;
+    if (!demi_place(velocity))
+        return demi_refuse(w, __func__, "velocity of wall %d is (%g, %g, "
+                           "%g) m/s, must be finite and within %g m/s; check how it was computed",
+                           (int)id.id, (double)velocity.x, (double)velocity.y, (double)velocity.z,
+                           DEMI_FARTHEST);
+    if (w->desc.planar && fabs((double)velocity.z) > 0)
+        return demi_refuse(w, __func__, "velocity of wall %d has the z "
+                           "component %g m/s, must be 0 in a planar world, where no grain moves "
+                           "along z", (int)id.id, (double)velocity.z);
+    demi_wall_before(w, i);
+    wall->glide = demi_unrotate(wall->pose.rotation, velocity);
+    wall->glides = demi_dot(velocity, velocity) > 0;
+    demi_wall_after(w, i);
+    demi_built(w, __func__);
+    if ((double)demi_length(velocity) > w->clock.assumed_speed) demi_dt_outdated(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
+    if (demi_null_look(world, __func__, pose, "pose")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, __func__, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *pose = world->walls[i].pose;
+    return DEM_OK;
+}
+/* True if the time step stays right for a wall with a new motion: the wall is not faster than the
+   impacts for which the step was chosen, and moves by less than a tenth of the smallest radius in a
+   step. */
+static int demi_motion_slow(const dem_world *w, const demi_wall *wall) {
+    const double v = demi_pose_speed(wall);
+    return 10*v*(double)w->clock.dt < (double)w->effects.radius_min &&
+        (!(v > 0) || w->desc.dt > 0 || v <= w->clock.assumed_speed);
+}
+/* True if a wall stays where it is when its new motion `to` begins. A rotation may start there with
+   rounding errors. A motion with a phase, by a table or by a function may begin elsewhere. */
+static int demi_wall_stays(const demi_wall *from, const demi_wall *to) {
+    return to->motion.kind == DEM_MOTION_ROTATING ||
+        (!memcmp(&from->pose.position, &to->pose.position, sizeof to->pose.position) &&
+         !memcmp(from->pose.rotation, to->pose.rotation, sizeof to->pose.rotation));
+}
+/* True if a program leads a wall that stays: its old motion began at most DEMI_LED steps ago, or
+   has yet to begin. */
+static int demi_wall_led(const dem_world *w, const demi_wall *from) {
+    return w->clock.time - from->motion.start <= DEMI_LED*(double)w->clock.dt;
+}
+DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (demi_null(w, __func__, motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, __func__, id);
+    demi_wall next;
+    const void *rows;
+    void *old;
+    int dropped, remains;
+    dem_result result;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
+    if (result != DEM_OK) return result;
+    /* from its present pose on, a wall that moves alone has the same candidates, if no rotation
+       decides which of its periodic images are at rest relative to it */
+    remains = demi_wall_stays(&w->walls[i], &next) && demi_wall_remains(w, &next, i) &&
+        (!w->repeating || (!demi_motion_turns(&w->walls[i].motion) &&
+                           !demi_motion_turns(&next.motion)));
+    dropped = remains || demi_list_drop(w);
+    rows = dropped ? w->walls[i].motion.table : next.motion.table;
+    memcpy(&old, &rows, sizeof old);
+    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
+    if (!dropped) return demi_no_memory(w, __func__);
+    if (!remains) demi_surfaces_outdated(w);
+    if (!remains || !demi_wall_led(w, &w->walls[i])) demi_forces_outdated(w);
+    demi_wall_before(w, i);
+    w->walls[i] = next;
+    demi_wall_after(w, i);
+    demi_built(w, __func__);
+    if (!remains || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
+    return demi_rails_lead(w, i) ? DEM_OK : demi_no_memory(w, __func__);
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>servo
+   Servo walls (DEM_MOTION_SERVO): before each step the speed of the wall is chosen from the force
+   that grains exert on it, so that the force approaches a target. The wall has no inertia. Owns
+   `servo` of walls; reads their loads and the persistent contacts of the last step. In a team the
+   sums extend over all members, in their order, and the walls of the first member move.
+
+   The law. Let K and C be the sums of normal stiffness and damping over the contacts of the wall, F
+   the present force, T the target, v and u the speeds towards the grains in the coming and in the
+   last step:
+       K dt (v - b u) + C (v - u) = a (T - F),   |v| at most the largest speed,
+   a = DEMI_SERVO_GAIN, b = DEMI_SERVO_KEPT. With C = b = 0 this is the servo of the triaxial cell
+   of YADE, which moves by (1 - damping)(T - F)/K in a step (TriaxialStressController: K is summed
+   over the contacts of the wall), and that of PFC, v = a (T - F)/(k N dt) for N contacts of
+   stiffness k. The terms of C make up for the change of the damping force, C (v - u): without them
+   the servo is unstable from step to step if C > K dt/a. The term of b makes it a PI controller.
+   While the target changes at a rate R, the error is R K dt (1 - b)/(a B) on a bed of stiffness B.
+   Stability. While grains rest, the error of contacts without damping obeys z^2 - (1 + b - a) z + b
+   = 0, whose roots are inside the unit circle if a < 2 + 2 b [Jury]: contacts may be 7 times as
+   stiff as K says, and four times as damped as C says. If grains move, the wall acts on them as a
+   dashpot K dt (1 - b)/a and a mass (b K dt + C) dt/a, which never supply energy. The mass is of
+   the order dt/t_c of that of the grains in contact.
+   --------------------------------------------------------------------------------------------- */
+#define DEMI_SERVO_GAIN 0.5        /* a; below its limit, since K grows with new contacts */
+#define DEMI_SERVO_KEPT 0.9        /* b */
+
+/* Returns the force along the direction of wall `of` that wall i exerts on the grains of w, N; 0 if
+   it is not part of the same piston. first: the world whose walls move. */
+static double demi_servo_force_of(const dem_world *first, const dem_world *w, int of, int i) {
+    const demi_wall *walls = first->walls;
+    if (walls[i].kind == DEMI_WALL_NONE || !demi_walls_alike(&walls[i], &walls[of])) return 0;
+    return -(double)demi_dot(w->walls[i].loads.force, demi_unit(walls[of].motion.velocity));
+}
+/* Returns the sum over the piston. */
+static double demi_servo_force(const dem_world *first, const dem_world *w, int of) {
+    double sum = 0;
+    int i;
+    for (i = 0; i < w->wall_count; i++) sum += demi_servo_force_of(first, w, of, i);
+    return sum;
+}
+/* Books the work that follows from a change of the wall's speed, m/s. The step has booked F v dt
+   with the speed before, but half of the impulse F dt acts after the change. */
+static void demi_servo_book(dem_world *w, const dem_world *first, int of, double change) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        const double work = demi_servo_force_of(first, w, of, i)*change*(double)w->clock.dt/2;
+        w->walls[i].loads.work += work;
+        if (w->desc.ledger) w->booked.energy[DEMI_E_WALLS] += work;
+    }
+}
+/* `part` of `sum` in demi_team: that force, and the sums of stiffness and damping over the contacts
+   of the group, as the built-in laws have them or by desc.law_stiffness. A body that is not a
+   sphere counts with its whole mass, so its damping is an upper bound. */
+enum { DEMI_SERVO_FORCE, DEMI_SERVO_STIFFNESS, DEMI_SERVO_DAMPING, DEMI_SERVO_SUMS };
+static void demi_servo_part(const dem_world *w, int of, double *out) {
+    const dem_world *first = w->team ? w->team->members[0] : w;
+    const demi_wall *walls = first->walls;
+    int d;
+    out[DEMI_SERVO_FORCE] = demi_servo_force(first, w, of);
+    out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
+        for (; c < end && w->domains[d].walls; c++) {
+            const double slope = (double)c->slope;
+            dem_real coef[DEMI_COEFS], root[2];
+            demi_stiffness s;
+            /* a body that has changed slab has left its contacts there until forces are computed */
+            if (c->b >= 0 || demi_is_ghost(w, c->a) ||
+                !demi_walls_alike(&walls[c->wall], &walls[of]) ||
+                (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
+            demi_kept_coefs(w, c, coef, root);
+            coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
+            s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
+            if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
+            if (w->desc.law && w->desc.law_stiffness > 0) s.k = (double)w->desc.law_stiffness;
+            out[DEMI_SERVO_STIFFNESS] += s.k*slope*slope*(double)c->lift;
+            out[DEMI_SERVO_DAMPING] += s.c*slope*(double)c->share;
+        }
+    }
+}
+/* Sums over all members, see `sum` of demi_team. */
+static dem_result demi_servo_sum(dem_world *h, int of, double *sums) {
+    if (h->team) return h->team->sum(h, demi_servo_part, of, sums, DEMI_SERVO_SUMS);
+    demi_servo_part(h, of, sums);
+    return DEM_OK;
+}
+/* Chooses the speed of wall w for the step that begins now. */
+static void demi_servo_choose(const dem_world *h, demi_wall *wall, const double *sums) {
+    const dem_motion *m = &wall->motion;
+    const double dt = (double)h->clock.dt, most = (double)demi_length(m->velocity);
+    const double far = m->travel > 0 ? (double)m->travel : DEMI_FARTHEST;
+    dem_servo *s = &wall->servo;
+    double push, gives;
+    s->travel += s->speed*(h->clock.time - s->time);
+    s->time = h->clock.time;
+    s->target = demi_servo_target(m, s->time);
+    s->force = sums[DEMI_SERVO_FORCE];
+    s->stiffness = sums[DEMI_SERVO_STIFFNESS];
+    s->damping = sums[DEMI_SERVO_DAMPING];
+    push = DEMI_SERVO_GAIN*(s->target - s->force) +
+        (DEMI_SERVO_KEPT*s->stiffness*dt + s->damping)*s->speed;
+    gives = s->stiffness*dt + s->damping;
+    s->speed = fabs(push) < most*gives ? push/gives : push > 0 ? most : push < 0 ? -most : 0;
+    if (fabs(s->travel + s->speed*dt) > far)
+        s->speed = ((s->speed > 0 ? far : -far) - s->travel)/dt;
+}
+/* Returns the first wall of the piston of wall i. */
+static int demi_servo_leader(const dem_world *first, int i) {
+    int k = 0;
+    while (k < i && (first->walls[k].kind == DEMI_WALL_NONE ||
+                     !demi_walls_alike(&first->walls[k], &first->walls[i]))) k++;
+    return k;
+}
+/* Chooses the speeds of all servo walls; the first wall of a piston decides for the others. */
+static dem_result demi_servos_lead(dem_world *h) {
+    dem_world *first = demi_member(h, 0);
+    double sums[DEMI_SERVO_SUMS], before;
+    dem_result result = DEM_OK;
+    int i, k;
+    for (i = 0; i < first->wall_count && result == DEM_OK; i++) {
+        demi_wall *wall = &first->walls[i];
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind != DEM_MOTION_SERVO ||
+            h->clock.time < wall->motion.start) continue;
+        k = demi_servo_leader(first, i);
+        if (k != i) { wall->servo = first->walls[k].servo; continue; }
+        result = demi_servo_sum(h, i, sums);
+        if (result != DEM_OK) break;
+        before = wall->servo.speed;
+        demi_servo_choose(h, wall, sums);
+        for (k = 0; k < demi_members(h); k++)
+            demi_servo_book(demi_member(h, k), first, i, wall->servo.speed - before);
+    }
+    return result;
+}
+/* Returns the state of a servo wall at the present time. */
+static dem_servo demi_servo_now(const dem_world *w, int wall) {
+    const dem_motion *m = &w->walls[wall].motion;
+    dem_servo s = w->walls[wall].servo;
+    s.travel += w->clock.time > s.time ? s.speed*(w->clock.time - s.time) : 0;
+    s.target = w->clock.time < m->start ? 0 : demi_servo_target(m, w->clock.time);
+    s.force = demi_servo_force(w, w, wall);
+    return s;
+}
+DEM_API dem_result dem_wall_servo_get(const dem_world *world, dem_wall id, dem_servo *servo) {
+    int i;
+    if (demi_null_look(world, __func__, servo, "servo")) return DEM_ERROR_ARGUMENT;
+    i = demi_wall_find((dem_world *)world, __func__, id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (world->walls[i].motion.kind != DEM_MOTION_SERVO)
+        return demi_refuse(world, __func__, "the motion of wall %d is not "
+                           "DEM_MOTION_SERVO; set it with dem_wall_motion_set", (int)id.id);
+    *servo = demi_servo_now(world, i);
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -92,9 +92,9 @@
        >>groups            named sets of bodies, selections
        >>feed              feeds and outlets
      drive/ - what is led from outside while a scene runs
+       >>rails             bodies with locked axes and prescribed velocities
        >>steering          new motions and belt speeds of walls, and the forces that follow
        >>servo             walls led to a target load
-       >>rails             bodies with locked axes and prescribed velocities
        >>growth            bodies that change their size
      run/ - the time step, the step, runs; a world begins and ends
        >>advice            the time step: what is chosen and what is too large
@@ -287,9 +287,9 @@
 #include "scene/placing.h"
 #include "scene/groups.h"
 #include "scene/feed.h"
+#include "drive/rails.h"
 #include "drive/steering.h"
 #include "drive/servo.h"
-#include "drive/rails.h"
 #include "drive/growth.h"
 #include "run/advice.h"
 #include "run/ahead.h"

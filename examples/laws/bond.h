@@ -16,8 +16,10 @@
    whole beam.
 
    law_range: above `gap`, and above the stretch at rupture, tension l/E. law_stiffness: 4 E A/l. law_who = 1. Limits: small
-   rotations of a bond; grains without a bond use the linear law with a spring (set normal_law to linear).
-   History: 8 reals, 2 vectors: shear (m), bending (rad), twist (rad), and the state (0: no bond; > 0: l; < 0: broken). */
+   rotations of a bond; grains without a bond use the linear law with a spring (set normal_law to linear). Where a bond breaks
+   under pressure, its grains repel from the distance at rupture on until they have parted, so that no energy is created.
+   History: 8 reals, 2 vectors: shear (m), bending (rad), twist (rad), and the state (0: no bond; > 0: l; < 0: broken, minus
+   the distance at rupture, or minus the sum of the radii once the grains have parted). */
 #ifndef BOND_H
 #define BOND_H
 #include <math.h>
@@ -54,8 +56,12 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     dem_real x, twist, along, damp[2];
     dem_vec3 s, b; double pull, side;
     if (!(memory[BOND_LENGTH] > 0)) {                  /* no bond, or broken */
-        if (c->overlap > 0) { dem_law_linear(c, memory, f); dem_law_spring(c, memory, f); }
+        dem_contact own = *c;
+        const dem_real radii = c->who.radius_a + c->who.radius_b, offset = radii + memory[BOND_LENGTH];
+        if (memory[BOND_LENGTH] < 0 && offset > 0) own.overlap -= offset;
+        if (own.overlap > 0) { dem_law_linear(&own, memory, f); dem_law_spring(&own, memory, f); }
         else if (dt > 0) memory[0] = memory[1] = memory[2] = 0;
+        if (dt > 0 && memory[BOND_LENGTH] < 0 && !(c->overlap > 0)) memory[BOND_LENGTH] = -radii;
         return;
     }
     s = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
@@ -68,7 +74,7 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     side = (double)stiff[1]*sqrt((double)bond_dot(s, s))/(double)A + fabs((double)(stiff[3]*twist))*(double)(r/(2*I));
     if (dt > 0 && (pull > (double)u->tension || side > (double)u->shear)) {
         f->energy.sag = bond_stored(stiff, x, s, b, twist);          /* its stored energy is lost */
-        memory[BOND_LENGTH] = -1;
+        memory[BOND_LENGTH] = -l;
         memory[0] = memory[1] = memory[2] = memory[3] = memory[4] = memory[5] = memory[6] = 0;
         return;
     }

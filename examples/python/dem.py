@@ -3065,10 +3065,9 @@ class Ledger(Struct):
         ('throughput', ctypes.c_double, 'sum of the magnitudes of what was supplied'),
         ('growth', ctypes.c_double,
          'supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or walls '
-         'are added, moved or removed between steps, materials change. Three amounts are in the residual: what'
-         ' springs held on a grain that an outlet or an outflow boundary removes; what springs gain when two '
-         'walls in one place part below a grain, because then both act where one did; what a contact holds '
-         'when it leaves the range of its law.'),
+         'are added, moved or removed between steps, materials change. In the residual are: what springs hold '
+         'on a grain that an outlet or outflow boundary removes, what they gain when two walls in one place '
+         "part below a grain, what a contact holds as it leaves its law's range."),
         ('residual', ctypes.c_double, ''),
         ('unknown', ctypes.c_double, '> 0: the user-defined law created energy'),
     ]
@@ -4575,12 +4574,12 @@ class World(WorldBase):
         are solved), a body that is not a sphere rotate by more than 1 rad, a cell strain by more than 0.01
         DEM_ERROR_UNSTABLE a position, velocity, force or number of a body is not finite, two bodies overlap by the
         smaller radius, a body and a wall by that of the body, or a motion or desc.growth returns impossible values
-        DEM_ERROR_FILE, DEM_ERROR_FORMAT an output cannot be written; its CSV has other columns DEM_ERROR_STOPPED an
-        output stopped the run; desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance; or an
-        overlap is above desc.overlap_stop. The step is complete. DEM_ERROR_MEMORY The bodies and the time may have
-        moved already. The step counts (dem_world_steps_get) when it is complete: the next call completes it as its
-        first step, here or in a world that has read a checkpoint written meanwhile. The bits are those of a run
-        without the interruption.
+        DEM_ERROR_FILE, DEM_ERROR_FORMAT an output cannot be written; its CSV has other columns. The next call writes
+        it, also one of 0 steps. DEM_ERROR_STOPPED an output stopped the run; desc.unsolved_stops is 1 and the sweeps
+        of a step did not reach the tolerance; or an overlap is above desc.overlap_stop. The step is complete.
+        DEM_ERROR_MEMORY The bodies and the time may have moved already. The step counts (dem_world_steps_get) when it
+        is complete: the next call completes it as its first step, here or in a world that has read a checkpoint
+        written meanwhile. The bits are those of a run without the interruption.
         """
         self._ok(self._run(_lib.dem_world_step, self._at, steps) if self._context.kept else
             _lib.dem_world_step(self._at, steps))

@@ -227,10 +227,9 @@ typedef struct dem_ledger {
     double removed;                         /* kinetic energy of removed bodies */
     double throughput;                      /* sum of the magnitudes of what was supplied */
     /* supplied: what springs gain when the scene changes and nothing moves: radii grow, bodies or
-       walls are added, moved or removed between steps, materials change. Three amounts are in the
-       residual: what springs held on a grain that an outlet or an outflow boundary removes; what
-       springs gain when two walls in one place part below a grain, because then both act where
-       one did; what a contact holds when it leaves the range of its law. */
+       walls are added, moved or removed between steps, materials change. In the residual are: what
+       springs hold on a grain that an outlet or outflow boundary removes, what they gain when two
+       walls in one place part below a grain, what a contact holds as it leaves its law's range. */
     double growth;
     double residual;
     double unknown;                         /* > 0: the user-defined law created energy */

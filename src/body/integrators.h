@@ -212,8 +212,7 @@ static void demi_prime_body(dem_world *w, int i) {
         s.half[k] = turning ? s.v[k] - s.f[k]*s.inv*h : s.v[k];
     }
     if (w->bodies.shaped && w->bodies.shape[i])
-        demi_put(w->bodies.angular + 4*i,
-                 demi_sub(demi_angular_of(w, i),
+        demi_put(w->bodies.angular + 4*i, demi_sub(demi_angular_of(w, i),
                           demi_scale(demi_at(w->bodies.torque + 4*i),
                                      demi_response_is(w, DEMI_MIDWAY) ? 0 : h)));
 }
@@ -292,8 +291,7 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
 /* Free rotation by [FIN92]. Half an Euler step gives q in the middle of the step; L and that q give
    w there; a whole step with that w gives q at the end. [RUB15] eq 17 to 21 uses it with w instead
    of L, which is the same for spheroids that do not spin about their axis. */
-static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
-                                    dem_real h) {
+static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv, dem_real h) {
     const dem_quat start = *q;
     dem_vec3 m = dem_quat_unrotate(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     dem_quat mid, by;

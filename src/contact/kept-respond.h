@@ -348,8 +348,7 @@ DEM_INLINE void demi_kept_answer_one(demi_kept_tile *DEMI_RESTRICT t, int q, int
     if (rolls) moment = demi_add(moment, demi_scale(demi_row(t->rows.moment, q), t->grip[q]));
     demi_row_put(t->rows.force, q, force);
     demi_row_put(t->rows.moment, q, moment);
-    demi_row_put(t->rows.torque[0], q,
-                 demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
+    demi_row_put(t->rows.torque[0], q, demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
                                      demi_add(force, demi_scale(push, t->outset[q]))), moment));
     demi_row_put(t->rows.torque[1], q,
                  demi_scale(demi_add(demi_cross(demi_rows_at(&t->arm[1], q), force), moment), -1));
@@ -521,11 +520,9 @@ static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
     const dem_vec3 moment = demi_cross(far, aside);
     demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
     demi_row_put(t->rows.moment, q, demi_add(demi_row(t->rows.moment, q), moment));
-    demi_row_put(t->rows.torque[0], q,
-                 demi_add(demi_row(t->rows.torque[0], q),
+    demi_row_put(t->rows.torque[0], q, demi_add(demi_row(t->rows.torque[0], q),
                           demi_cross(demi_add(c->arm_a, arm), aside)));
-    demi_row_put(t->rows.torque[1], q,
-                 demi_sub(demi_row(t->rows.torque[1], q),
+    demi_row_put(t->rows.torque[1], q, demi_sub(demi_row(t->rows.torque[1], q),
                           demi_add(demi_cross(c->arm_b, aside), moment)));
 }
 /* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,

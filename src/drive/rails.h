@@ -337,11 +337,35 @@ static void demi_rails_drop(dem_world *w, dem_body body) {
     }
     w->rail_count = left;
 }
-DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
+/* Gives a body the velocity and spin that its rail prescribes. Returns 0 if memory runs out. */
+static int demi_rail_lead(dem_world *w, demi_rail *r) {
+    const int of = demi_rail_wall(w, r), axes = r->state.desc.axes;
     dem_real v[3], s[3], own[6];
     dem_body_state state;
+    int k, ok;
+    demi_rail_wants(r, of < 0 ? 0 : &w->walls[of].pose, r->at, v, s);
+    dem_body_get(w, r->body, &state);
+    demi_put(own, state.velocity);
+    demi_put(own + 3, state.spin);
+    for (k = 0; k < 6; k++) if (axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
+    state.velocity = demi_at(own);
+    state.spin = demi_at(own + 3);
+    r->state.desc.axes = 0;                     /* dem_body_set leaves locked axes as they are */
+    ok = dem_body_set(w, r->body, &state) == DEM_OK;
+    r->state.desc.axes = axes;
+    return ok;
+}
+/* A wall with a new motion takes its bodies along at once. Returns 0 if memory runs out. */
+static int demi_rails_lead(dem_world *w, int wall) {
+    int k, ok = 1;
+    for (k = 0; k < w->rail_count && ok; k++)
+        if (demi_rail_wall(w, &w->rails[k]) == wall && demi_rail_body(w, &w->rails[k]) >= 0)
+            ok = demi_rail_lead(w, &w->rails[k]);
+    return ok;
+}
+DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail_desc *d) {
     demi_rail *r;
-    int i, k, of;
+    int i;
     if (demi_null(w, __func__, d, "desc")) return DEM_ERROR_ARGUMENT;
     i = demi_body_index(w, __func__, body);
     if (i < 0 || demi_rows_check(w, __func__, demi_rail_fields, d, "", "start from DEM_RAIL_DESC"))
@@ -367,15 +391,7 @@ DEM_API dem_result dem_body_rail_set(dem_world *w, dem_body body, const dem_rail
     r->body = body;
     r->state.desc = *d;
     r->at = r->seen = demi_at(w->bodies.pos + 4*i);
-    of = demi_rail_wall(w, r);
-    demi_rail_wants(r, of < 0 ? 0 : &w->walls[of].pose, r->at, v, s);
-    dem_body_get(w, body, &state);
-    demi_put(own, state.velocity);
-    demi_put(own + 3, state.spin);
-    for (k = 0; k < 6; k++) if (d->axes >> k & 1) own[k] = k < 3 ? v[k] : s[k - 3];
-    state.velocity = demi_at(own);
-    state.spin = demi_at(own + 3);
-    if (dem_body_set(w, body, &state) != DEM_OK) return demi_no_memory(w, __func__);
+    if (!demi_rail_lead(w, r)) return demi_no_memory(w, __func__);
     w->rail_count++;
     return DEM_OK;
 }

@@ -156,5 +156,5 @@ DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_moti
     demi_wall_after(w, i);
     demi_built(w, __func__);
     if (!remains || !demi_motion_slow(w, &next)) demi_dt_outdated(w);
-    return DEM_OK;
+    return demi_rails_lead(w, i) ? DEM_OK : demi_no_memory(w, __func__);
 }

@@ -196,10 +196,8 @@ static int demi_walled_note(dem_world *w) {
    arrays that have grown stay valid. */
 static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride;
-    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, list->a, n) &&
-                   DEMI_GROW(w, list->b, n) &&
-                   DEMI_GROW(w, list->place, n) &&
-                   DEMI_GROW(w, list->image, n);
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, list->a, n) && DEMI_GROW(w, list->b, n) &&
+                   DEMI_GROW(w, list->place, n) && DEMI_GROW(w, list->image, n);
     if (ok) list->stride = stride;
     return ok;
 }
@@ -211,16 +209,12 @@ static int demi_many_species(const dem_world *w) {
 /* As demi_list_reserve, for a pruned neighbour list. */
 static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
-    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) &&
-                   DEMI_GROW(w, near->b, n) &&
-                   DEMI_GROW(w, near->k, n) &&
-                   DEMI_GROW(w, near->image, n) &&
-                   DEMI_GROW(w, near->balls,
-                             !w->effects.clustered && w->effects.unlike ? n : 0) &&
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) && DEMI_GROW(w, near->b, n) &&
+                   DEMI_GROW(w, near->k, n) && DEMI_GROW(w, near->image, n) &&
+                   DEMI_GROW(w, near->balls, !w->effects.clustered && w->effects.unlike ? n : 0) &&
                    (!w->effects.clustered || (DEMI_GROW(w, near->ball_a, n) &&
                     DEMI_GROW(w, near->ball_b, n) && DEMI_GROW(w, near->on, n) &&
-                    DEMI_GROW(w, near->hit, n))) &&
-                   DEMI_GROW(w, near->memory, m) &&
+                    DEMI_GROW(w, near->hit, n))) && DEMI_GROW(w, near->memory, m) &&
                    (w->effects.uniform || (demi_many_species(w)
                        ? DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS)
                        : DEMI_GROW(w, near->row, n)));
@@ -231,10 +225,8 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
 static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, w->wall_body, n) &&
-                   DEMI_GROW(w, w->wall_id, n) &&
-                   DEMI_GROW(w, w->wall_shift, 3*n) &&
-                   DEMI_GROW(w, w->wall_cell, n) &&
-                   DEMI_GROW(w, w->wall_gap, n) &&
+                   DEMI_GROW(w, w->wall_id, n) && DEMI_GROW(w, w->wall_shift, 3*n) &&
+                   DEMI_GROW(w, w->wall_cell, n) && DEMI_GROW(w, w->wall_gap, n) &&
                    DEMI_GROW(w, w->wall_element, n);
     if (ok) w->wall_stride = stride;
     return ok;
@@ -325,8 +317,7 @@ static int demi_touching_reserve(dem_world *w) {
         n += (size_t)most;
         if (n > (size_t)INT_MAX/8) return 0;
     }
-    w->touching_valid = DEMI_GROW(w, w->touching, n) &&
-                        DEMI_GROW(w, w->touching_links, n) &&
+    w->touching_valid = DEMI_GROW(w, w->touching, n) && DEMI_GROW(w, w->touching_links, n) &&
                         DEMI_GROW(w, w->touching_table, 4*n);
     return w->touching_valid;
 }

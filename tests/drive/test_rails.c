@@ -509,6 +509,35 @@ int main(int argc, char **argv) {
                 dem_world_destroy(world);
             }
     }
+    TEST("a wall with a new motion takes bodies on its rails along at once, and the ledger closes") {
+        int shape, kind;
+        for (shape = 0; shape < SHAPES; shape++)
+            for (kind = 0; kind < 2; kind++) {
+                dem_rail_desc rail = rail_of(DEM_RAIL_ALL, at(0, 0, 0), at(0, 0, 0));
+                dem_motion d = DEM_MOTION;
+                dem_material m;
+                dem_world *world = stage(0, 1e-5, &m);
+                const dem_body body = body_of(world, m, shape, at(0.1, 0, 0));
+                dem_body_state s;
+                dem_ledger l;
+                rail.wall = dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+                CHECK_EQ(dem_body_rail_set(world, body, &rail), DEM_OK);
+                CHECK_EQ(scene_step(world, kind ? 5 : 0), DEM_OK);
+                d.kind = kind ? DEM_MOTION_ROTATING : DEM_MOTION_TRANSLATING;
+                d.velocity = at(0, 0.5, 0);
+                d.axis = at(0, 0, 1);
+                d.speed = 5;
+                CHECK_EQ(dem_wall_motion_set(world, rail.wall, &d), DEM_OK);
+                s = scene_state(world, body);
+                CHECK_NEAR(s.velocity.y, 0.5, 1e-6);
+                CHECK_NEAR(s.spin.z, kind ? 5 : 0, 1e-5);
+                CHECK_EQ(scene_step(world, 10), DEM_OK);
+                l = dem_ledger_get(world);
+                CHECK(l.kinetic > 0.5*l.inserted && l.inserted > 0);
+                CHECK_NEAR(l.residual, 0, 1e-5*l.inserted);
+                dem_world_destroy(world);
+            }
+    }
     TEST("the rail of a body that was fixed gives no force, torque or power, and its work stays") {
         const dem_rail_desc rail = rail_of(DEM_RAIL_ALL, at(0, 0, 0.1), at(0, 0, 0));
         dem_world_desc desc = DEM_WORLD_DESC;

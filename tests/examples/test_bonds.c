@@ -175,5 +175,27 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
+    TEST("a bond that breaks under pressure leaves its grains at the overlap that they have, and creates no energy") {
+        bond cement = strong();
+        pull_on load = {0, {0, 0, 0}, 0};
+        dem_body last;
+        dem_world *w;
+        dem_body_state s;
+        dem_ledger l;
+        int bonds[2] = {0, 0};
+        cement.E = DEM_R(1e5);
+        cement.shear = DEM_R(600);
+        w = beam(&cement, &load, 1, 1, &last);
+        s = scene_state(w, last);
+        s.velocity = at(-0.2, 0, 0.2);                         /* presses first; then shear breaks the bond */
+        dem_body_set(w, last, &s);
+        CHECK_EQ(scene_step(w, 3000), DEM_OK);
+        dem_contacts_each(w, bond_count, bonds);
+        CHECK(bonds[0] == 0);
+        l = dem_ledger_get(w);
+        CHECK_NEAR(l.residual/l.throughput, 0, DEMI_SINGLE ? 2e-2 : 2e-3);
+        CHECK(l.kinetic + l.rotational <= l.inserted);
+        dem_world_destroy(w);
+    }
     return test_end();
 }
