@@ -426,8 +426,7 @@ static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_
 static demi_rail *demi_rail_of(const dem_world *w, dem_body body) {
     int k;
     for (k = 0; k < w->rail_count; k++)
-        if (w->rails[k].body.slot == body.slot && w->rails[k].body.generation == body.generation)
-            return &w->rails[k];
+        if (!memcmp(&w->rails[k].body, &body, sizeof body)) return &w->rails[k];
     return 0;
 }
 /* Gives body i a velocity, m/s, and a spin, rad/s; null: those that it has. A fixed body rests, one
