@@ -561,28 +561,6 @@ int main(int argc, char **argv) {
             dem_world_destroy(plain);
         }
     }
-    TEST("creating slabs leaves the world unchanged: list, candidates, rebuilds and further run") {
-        scene_memory none;
-        dem_world *a = spare_world(&none, 0), *b = spare_world(&none, 0);
-        dem_slabs_desc two = DEM_SLABS_DESC;
-        dem_slabs *slabs;
-        two.count = 2;
-        scene_step(a, 20);
-        scene_step(b, 20);
-        CHECK(dem_contacts_get(a, 0, 0) > 10);
-        slabs = dem_slabs_create(a, &two);
-        CHECK(slabs != 0);
-        CHECK_EQ(dem_contacts_get(a, 0, 0), dem_contacts_get(b, 0, 0));
-        CHECK_EQ(dem_counters_get(a).candidates, dem_counters_get(b).candidates);
-        CHECK_EQ(dem_world_hash_get(a), dem_world_hash_get(b));
-        scene_step(a, 100);
-        scene_step(b, 100);
-        CHECK_EQ(dem_world_hash_get(a), dem_world_hash_get(b));
-        CHECK_EQ(dem_counters_get(a).rebuilds, dem_counters_get(b).rebuilds);
-        dem_slabs_destroy(slabs);
-        dem_world_destroy(a);
-        dem_world_destroy(b);
-    }
     TEST("the hash is the same with a contact list and with its history in transit to the next one") {
         scene_memory none;
         dem_world *world = spare_world(&none, 0);

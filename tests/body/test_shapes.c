@@ -1,6 +1,6 @@
 /* Bodies that are not spheres: where two ellipsoids meet, against brute force and the literal
    construction of [RUB15]; ellipsoids and clusters against walls and each other; mass properties of
-   clusters; what a world of them promises (state, errors, threads, checkpoints).
+   clusters; what a world of them promises (state, errors).
    [RUB15] seed 002 of the project, sections 2 and 3; [PW85] Perram & Wertheim, J. Comput. Phys. 58
    (1985) 409; references of granular gases as in docs/ellipsoids.md. */
 #define DEM_IMPLEMENTATION
@@ -1571,34 +1571,6 @@ static void promise_tests(void) {
         CHECK_EQ(dem_bodies_get(world).count, 1);
         CHECK_EQ(dem_shape_ellipsoid_add(world, at(1, 1, 1)).id, good.id + 1); /* no id was spent */
         dem_world_destroy(world);
-    }
-
-    TEST("mixed shapes have the same bits for 1, 2, 3 threads, in a second world and after a checkpoint") {
-        const char *path = "build/tmp/shapes.dem";
-        uint64_t hash[5];
-        int k;
-        for (k = 0; k < 5; k++) {
-            dem_world_desc desc = mixture_desc();
-            dem_world *world;
-            desc.threads = k < 3 ? k + 1 : 1;
-            world = mixture(&desc, 3);
-            if (k == 4) {
-                dem_world *other;
-                CHECK_EQ(dem_world_step(world, 1500), DEM_OK);
-                CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
-                other = mixture(&desc, 3);
-                CHECK_EQ(dem_checkpoint_read(other, path), DEM_OK);
-                CHECK_STR(dem_world_error_get(other), "");
-                CHECK(dem_world_hash_get(world) == dem_world_hash_get(other));
-                dem_world_destroy(world);
-                world = other;
-                remove(path);
-            }
-            CHECK_EQ(dem_world_step(world, k == 4 ? 1500 : 3000), DEM_OK);
-            hash[k] = dem_world_hash_get(world);
-            dem_world_destroy(world);
-        }
-        for (k = 1; k < 5; k++) CHECK(hash[k] == hash[0]);
     }
 
     TEST("bodies filled in at random positions and orientations do not touch") {

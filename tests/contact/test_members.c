@@ -295,28 +295,21 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
     }
-    TEST("a heap with clusters has the same bits for any threads, for lists rebuilt at every step, and after a restart") {
+    TEST("a heap with clusters has the same bits for lists rebuilt at every step") {
         int kinds, how;
         for (kinds = 2; kinds < 8; kinds++) {
-            uint64_t hash[4];
+            uint64_t hash[2];
             if (!(kinds & 2)) continue;
-            for (how = 0; how < 4; how++) {
+            for (how = 0; how < 2; how++) {
                 dem_world_desc desc = DEM_WORLD_DESC;
                 dem_world *w;
                 int k;
-                desc.threads = how == 1 ? 3 : 1;
+                desc.threads = 1;
                 desc.ledger = 1;
                 desc.skin = DEM_R(2e-4);        /* chosen, it depends on how long lists last */
                 w = heap(desc, kinds, 60);
                 for (k = 0; k < 6000; k++) {
-                    if (how == 2) w->margin.span = 0;           /* the pruned list is rebuilt */
-                    if (how == 3 && k == 3000) {
-                        dem_world *again = heap(desc, kinds, 60);
-                        CHECK_EQ(dem_checkpoint_write(w, "build/tmp/members.dem"), DEM_OK);
-                        CHECK_EQ(dem_checkpoint_read(again, "build/tmp/members.dem"), DEM_OK);
-                        dem_world_destroy(w);
-                        w = again;
-                    }
+                    if (how) w->margin.span = 0;        /* the pruned list is rebuilt */
                     if (dem_world_step(w, 1) != DEM_OK) break;
                 }
                 CHECK_EQ(k, 6000);
@@ -326,7 +319,6 @@ int main(int argc, char **argv) {
                 dem_world_destroy(w);
             }
         }
-        remove("build/tmp/members.dem");
     }
     return test_end();
 }

@@ -98,41 +98,6 @@ static double least_friction(double inner, double outer, double centre) {
         }
     return least;
 }
-/* A heap in a box: every kind of body, with friction. */
-static dem_world *heap(int threads) {
-    dem_world_desc desc = DEM_WORLD_DESC;
-    dem_world *w;
-    dem_material m;
-    dem_shape shapes[4];
-    dem_real pair[6] = {0, 0, 0, DEM_R(0.005), 0, 0};
-    dem_cluster_desc cluster = DEM_CLUSTER_DESC;
-    uint64_t random = 9;
-    int i;
-    desc.gravity = at(0, 0, -9.81);
-    desc.dt = DEM_R(1e-5);
-    desc.threads = threads;
-    w = dem_world_create(&desc);
-    m = scene_material(w, 2e6, 0.4, 0.4, 0);
-    cluster.count = 2;
-    cluster.positions = pair;
-    cluster.radius = DEM_R(0.004);
-    shapes[0] = scene_rock(w, &random, 16, 0.008);
-    shapes[1] = scene_box(w, 0.008, 0.009, 0.01);
-    shapes[2] = dem_shape_ellipsoid_add(w, at(0.004, 0.005, 0.006));
-    shapes[3] = dem_shape_cluster_add(w, &cluster);
-    dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
-    for (i = 0; i < 4; i++) {
-        const double x = i == 0 ? -1 : i == 1 ? 1 : 0, y = i == 2 ? -1 : i == 3 ? 1 : 0;
-        dem_wall_plane_add(w, m, at(0.03*x, 0.03*y, 0), at(-x, -y, 0));
-    }
-    for (i = 0; i < 45; i++) {
-        const dem_vec3 x = at(-0.018 + 0.018*(i%3), -0.018 + 0.018*(i/3%3), 0.009 + 0.017*(i/9));
-        const dem_body b = i%5 == 4 ? dem_sphere_add(w, m, DEM_R(0.005), x)
-                                    : dem_body_add(w, m, shapes[i%5], x, scene_turn(&random));
-        scene_move(w, b, at(0, 0, -1.5), at(5, 3, 0));
-    }
-    return w;
-}
 
 /* Spin, rad/s, of a bar of 40 x 4 x 4 mm that friction has slowed for 0.02 s as it lies flat; turned by an angle about the normal. */
 static double bar_slowed(int impulses, double angle) {
@@ -845,41 +810,6 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
         CHECK(1);
-    }
-
-    TEST("a heap of mixed shapes has the same bits for 1 to 8 threads, a second world, a checkpoint and one slab") {
-        const char *path = "build/tmp/polyhedra.dem";
-        uint64_t hash[8];
-        int k;
-        for (k = 0; k < 8; k++) {
-            dem_world *w = heap(k < 3 ? k + 1 : k == 3 ? 4 : k == 4 ? 8 : 1);
-            if (k == 6) {
-                dem_world *other;
-                CHECK_EQ(dem_world_step(w, 1500), DEM_OK);
-                CHECK_EQ(dem_checkpoint_write(w, path), DEM_OK);
-                other = heap(1);
-                CHECK_EQ(dem_checkpoint_read(other, path), DEM_OK);
-                CHECK(dem_world_hash_get(w) == dem_world_hash_get(other));
-                dem_world_destroy(w);
-                w = other;
-                remove(path);
-                CHECK_EQ(dem_world_step(w, 1500), DEM_OK);
-            } else if (k == 7) {
-                dem_slabs_desc desc = DEM_SLABS_DESC;
-                dem_slabs *slabs;
-                desc.count = 1;
-                slabs = dem_slabs_create(w, &desc);
-                CHECK(slabs != 0);
-                CHECK_EQ(dem_slabs_step(slabs, 3000), DEM_OK);
-                CHECK_EQ(dem_slabs_collect(slabs, w), DEM_OK);
-                dem_slabs_destroy(slabs);
-            } else CHECK_EQ(dem_world_step(w, 3000), DEM_OK);
-            CHECK(dem_counters_get(w).contacts > 20 || k == 7);
-            CHECK_EQ(dem_candidates_rebuild(w), DEM_OK);     /* memory is in it while there is a list */
-            hash[k] = dem_world_hash_get(w);
-            dem_world_destroy(w);
-        }
-        for (k = 1; k < 8; k++) CHECK(hash[k] == hash[0]);
     }
 
     return test_end();

@@ -40,7 +40,7 @@ static dem_rail_state rail_now(const dem_world *world, dem_body body) {
     return s;
 }
 /* A box with a paddle on a rail among grains. */
-static dem_world *mixer(int threads, dem_body *paddle) {
+static dem_world *mixer(dem_body *paddle) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_rail_desc rail = rail_of(DEM_RAIL_ALL, at(0, 0, 0), at(0, 0, 12));
     dem_world *world;
@@ -49,7 +49,7 @@ static dem_world *mixer(int threads, dem_body *paddle) {
     int i;
     desc.gravity.z = DEM_R(-9.81);
     desc.dt = DEM_R(1.5e-5);
-    desc.threads = threads;
+    desc.threads = 1;
     desc.ledger = 1;
     world = dem_world_create(&desc);
     m = scene_material(world, 1e6, 0.5, 0.5, 0);
@@ -326,18 +326,15 @@ int main(int argc, char **argv) {
         CHECK(fabs(l.residual - start) < (fine ? 1e-4 : 2e-2)*l.walls);
         dem_world_destroy(world);
     }
-    TEST("a mixer's paddle on a rail continues from a checkpoint, and has the same bits on threads") {
+    TEST("a mixer's paddle on a rail continues from a checkpoint with the same bits") {
         char path[] = "build/tmp/test_rails.checkpoint";
         dem_body paddle;
-        dem_world *world = mixer(1, &paddle), *again, *many = mixer(3, &paddle);
+        dem_world *world = mixer(&paddle), *again;
         dem_rail_state r, other;
         CHECK_EQ(scene_step(world, 2000), DEM_OK);
         CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
         CHECK_EQ(scene_step(world, 1500), DEM_OK);
-        CHECK_EQ(scene_step(many, 2000), DEM_OK);
-        CHECK_EQ(scene_step(many, 1500), DEM_OK);
-        CHECK(dem_world_hash_get(many) == dem_world_hash_get(world));
-        again = mixer(1, &paddle);
+        again = mixer(&paddle);
         dem_body_rail_set(again, paddle, &DEM_RAIL_DESC);
         CHECK_EQ(dem_checkpoint_read(again, path), DEM_OK);
         CHECK_EQ(scene_step(again, 1500), DEM_OK);
@@ -363,7 +360,6 @@ int main(int argc, char **argv) {
         CHECK(dem_body_reaction_get(world, paddle, &r) != DEM_OK);
         dem_world_destroy(world);
         dem_world_destroy(again);
-        dem_world_destroy(many);
         remove(path);
     }
     TEST("a body on a rail of a rotating wall goes on from the position that dem_body_set gives it, also far away") {

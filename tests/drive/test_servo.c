@@ -359,34 +359,6 @@ int main(int argc, char **argv) {
         CHECK_REL(servo_of(world, wall).force, 4, 1e-4);
         dem_world_destroy(world);
     }
-    TEST("one slab gives the bits of a servo wall in a world; three slabs reach the same load") {
-        int count;
-        for (count = 1; count <= 3; count += 2) {
-            double top;
-            dem_motion motion = press(0.05, 0.5);
-            dem_material m;
-            dem_world *one = bed(0, &m, &top), *other = bed(0, &m, &top);
-            dem_slabs_desc desc = DEM_SLABS_DESC;
-            dem_slabs *slabs;
-            const dem_wall wall = lid(one, m, top, &motion);
-            lid(other, m, top, &motion);
-            desc.count = count;
-            slabs = dem_slabs_create(other, &desc);
-            if (!slabs) puts(dem_world_error_get(other));
-            CHECK_EQ(scene_step(one, 3000), DEM_OK);
-            CHECK_EQ(dem_slabs_step(slabs, 3000), DEM_OK);
-            CHECK_EQ(dem_slabs_collect(slabs, other), DEM_OK);
-            CHECK_EQ(dem_candidates_rebuild(one), DEM_OK);       /* history is in the digest only with a list */
-            CHECK_EQ(dem_candidates_rebuild(other), DEM_OK);
-            if (count == 1) CHECK(dem_world_hash_get(one) == dem_world_hash_get(other));
-            CHECK_REL(servo_of(other, wall).force, servo_of(one, wall).force, count == 1 ? 1e-15 : 1e-2);
-            CHECK_REL(servo_of(other, wall).travel, servo_of(one, wall).travel, count == 1 ? 1e-15 : 1e-2);
-            CHECK_REL(dem_ledger_get(other).walls, dem_ledger_get(one).walls, count == 1 ? 1e-15 : 1e-2);
-            dem_slabs_destroy(slabs);
-            dem_world_destroy(one);
-            dem_world_destroy(other);
-        }
-    }
     TEST("dem.h refuses wrong values of a servo wall, and names impulses as a reason") {
         dem_world_desc desc = DEM_WORLD_DESC;
         const dem_material_desc stuff = scene_stuff(1e7, 0.5, 0.3, 0);

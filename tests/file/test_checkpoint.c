@@ -8,19 +8,8 @@
 #include "../walk.h"
 
 static const char path[] = "build/tmp/state.ckpt";
-enum { LAW_SPRING, LAW_MINDLIN, LAW_RESCALED, LAW_EPSD, LAW_OWN, LAWS };
+enum { LAW_SPRING, LAW_MINDLIN, LAW_EPSD };
 
-/* A law of one's own: linear spring and dashpot, a spring in the tangent plane, a count of steps.
-   */
-static void own_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
-    dem_vec3 s = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
-    const dem_real k = 2000;
-    s = dem_vec3_make(s.x + c->dt*c->slip.x, s.y + c->dt*c->slip.y, s.z + c->dt*c->slip.z);
-    push->normal = k*c->overlap + c->closing_speed/100;
-    push->tangent = dem_vec3_make(-k/4*s.x, -k/4*s.y, -k/4*s.z);
-    memory[0] = s.x; memory[1] = s.y; memory[2] = s.z;
-    if (c->dt > 0) memory[3] += 1;
-}
 static dem_vec3 swirl(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time,
                       void *user) {
     const double s = 20*(double)mass*cos(300*time);
@@ -44,8 +33,6 @@ static play play_make(int integrator, int law) {
 }
 
 static dem_world *play_world(const play *p) {
-    static const dem_tangent_law tangents[] = {DEM_TANGENT_SPRING, DEM_TANGENT_MINDLIN,
-        DEM_TANGENT_MINDLIN_RESCALED, DEM_TANGENT_SPRING, DEM_TANGENT_AUTO};
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
     dem_material glass;
@@ -57,14 +44,8 @@ static dem_world *play_world(const play *p) {
     desc.threads = p->threads;
     desc.integrator = p->integrator;
     desc.gravity = at(0, 0, -500);              /* keeps the heap together in a short time */
-    desc.tangent_law = tangents[p->law];
+    desc.tangent_law = p->law == LAW_MINDLIN ? DEM_TANGENT_MINDLIN : DEM_TANGENT_SPRING;
     if (p->law == LAW_EPSD) desc.rolling_law = DEM_ROLLING_EPSD;
-    if (p->law == LAW_OWN) {
-        desc.law = own_law;
-        desc.law_memory = 4;
-        desc.law_vectors = 1;
-        desc.law_stiffness = 2000;
-    }
     desc.dt = (dem_real)p->dt;
     desc.allow_large_dt = 1;
     desc.force = swirl;
@@ -754,19 +735,6 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
-    TEST("2N steps are N steps, a checkpoint and N steps, for every integrator and law with "
-         "memory") {
-        int integrator, law;
-        for (integrator = DEM_INTEGRATOR_VELOCITY_VERLET; integrator <= DEM_INTEGRATOR_LEAPFROG; integrator++)
-            for (law = 0; law < LAWS; law++) {
-                const play p = play_make(integrator, law);
-                play_both(&p);
-                if (test_now.wrong) {
-                    printf("        first with integrator %d, law %d\n", integrator, law);
-                    law = LAWS; integrator = DEM_INTEGRATOR_LEAPFROG;
-                }
-            }
-    }
     TEST("2N steps are N, a checkpoint and N, when the time step and the skin are chosen by the "
          "library") {
         play p = play_make(DEM_INTEGRATOR_VELOCITY_VERLET, LAW_MINDLIN);

@@ -480,76 +480,6 @@ static uint64_t explode(double factor, int threads, int allow, dem_result *resul
     return hash;
 }
 
-/* ---- memory ---- */
-
-static dem_world *growing(scene_memory *c, int side, int threads) {
-    dem_world_desc desc = DEM_WORLD_DESC;
-    dem_feed_desc feed;
-    dem_world *world;
-    dem_material m;
-    if (c) scene_memory_use(c, &desc);
-    desc.threads = threads;
-    desc.ledger = 1;
-    desc.gravity = at(0, 0, -9.81);
-    desc.dt = DEM_R(4e-6);
-    desc.skin = DEM_R(1e-4);
-    world = dem_world_create(&desc);
-    m = scene_material(world, 1e7, 0.5, 0.3, 0.1);
-    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-    scene_block(world, m, side, side, side, ball_size, 1, 2, 1);
-    memset(&feed, 0, sizeof feed);
-    feed.material = m;
-    feed.class_count = 1;
-    feed.radius[0] = DEM_R(8e-4);
-    feed.amount[0] = 1;
-    feed.rate = 1e6;                            /* 4 grains a step */
-    feed.box = box_of(0, 0, 0.03, 0.025, 0.025, 0.05);
-    feed.seed = 3;
-    CHECK(dem_feed_add(world, &feed).id);
-    return world;
-}
-enum { GROWN = 40 };                            /* steps */
-/* Refuses request k of a run once. The run, and another one that goes on from what was saved then,
-   end as the one that was never refused. Answers how many requests there were. */
-static long refuse_in_a_run(long k, int side, int threads, uint64_t *hash) {
-    scene_memory c, other;
-    dem_world *world = growing(&c, side, threads);
-    dem_result result = DEM_OK;
-    const long before = c.calls;
-    long n;
-    int refusals = 0, others, calls = 0;        /* calls: since the refusal */
-    const dem_body none = {0, 0};
-    c.refuse = k ? before + k : 0;
-    while (dem_world_steps_get(world) < GROWN || result != DEM_OK) {
-        result = dem_world_step(world, 1);      /* or what was left of the one refused */
-        calls++;
-        if (result == DEM_OK) continue;
-        calls = 0;
-        CHECK_EQ(result, DEM_ERROR_MEMORY);
-        says(world, "dem_world_step: out of memory with", "MB held", "use fewer bodies",
-             "or a smaller skin");
-        CHECK_EQ(not_finite(world, none, &others), 0);
-        if (refusals++ > 3) break;
-        inspect(world, 0);
-    }
-    CHECK_EQ(refusals, k ? 1 : 0);
-    n = c.calls - before;
-    if (!k) *hash = dem_world_hash_get(world);
-    CHECK_EQ(dem_world_hash_get(world), *hash);
-    dem_world_destroy(world);
-    CHECK_EQ(c.blocks, 0);
-    CHECK_EQ(c.wrong, 0);
-    if (!k) return n;
-    world = growing(&other, side, 3 - threads); /* from the file that inspect wrote */
-    CHECK_EQ(dem_checkpoint_read(world, saved), DEM_OK);
-    result = DEM_OK;
-    while (calls-- > 0 && result == DEM_OK) result = scene_step(world, 1);
-    CHECK_EQ(dem_world_steps_get(world), GROWN);
-    CHECK_EQ(dem_world_hash_get(world), *hash);
-    dem_world_destroy(world);
-    return n;
-}
-
 /* ---- a callback that stops ---- */
 
 static int halt(const dem_world *world, double done, double left, void *user) {
@@ -759,16 +689,6 @@ int main(int argc, char **argv) {
                     }
                     dem_world_destroy(world);
                 }
-    }
-    TEST("an allocation that fails during a run leaves a whole world that continues with the same "
-         "bits, for 1 and 2 threads") {
-        const int side = getenv("TEST_LONG") ? 13 : 6;
-        uint64_t hash = 0;
-        const long requests = refuse_in_a_run(0, side, 1, &hash);
-        long k;
-        CHECK(requests > 10);
-        for (k = 1; k <= requests && !test_now.wrong; k++)
-            refuse_in_a_run(k, side, 1 + (int)(k%2), &hash);
     }
     TEST("a run stopped by its progress function stops between two steps and continues with the "
          "same bits") {

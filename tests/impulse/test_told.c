@@ -1,5 +1,5 @@
-/* What the solved impulses become: forces on bodies, the list of contacts, and the state from which a run
-   continues. Each test goes over the kinds of grains. */
+/* What the solved impulses become: forces on bodies and the list of contacts. Each test goes over the kinds of
+   grains. */
 #define DEM_IMPLEMENTATION
 #include "../../dem.h"
 #include "../test.h"
@@ -51,15 +51,6 @@ static void fill(dem_world *world, dem_material m, int kind, int walls, uint64_t
         scene_move(world, grains[i], v, scene_at(&seed, 200, -100, 200, -100, 200, -100));
     }
 }
-/* 1 if two files have the same bytes. */
-static int same(const char *one, const char *other) {
-    FILE *a = fopen(one, "rb"), *b = fopen(other, "rb");
-    int x = 0, y = a && b ? 0 : 1;
-    while (a && b && x == y && x != EOF) { x = fgetc(a); y = fgetc(b); }
-    if (a) fclose(a);
-    if (b) fclose(b);
-    return x == y;
-}
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
@@ -79,37 +70,6 @@ int main(int argc, char **argv) {
             }
             dem_world_destroy(world);
         }
-    }
-    /* wherever a run is cut, also between two pruned lists and while some grains are isolated */
-    TEST("impulses: a restart continues to the bit for grains of every kind, with and without walls") {
-        static const char *const path[] = {"build/tmp/told_1.ckpt", "build/tmp/told_2.ckpt"};
-        int kind, walls, seed, k, i;
-        for (kind = BALL; kind < KINDS; kind++)
-            for (walls = 0; walls < 2; walls++)
-                for (seed = 0; seed < 4; seed++)
-                    for (k = 5; k < 80; k += 18) {
-                        dem_material m;
-                        dem_world *one = made(1e-4, 0, 0.37, &m), *two = made(1e-4, 0, 0.37, &m);
-                        fill(one, m, kind, walls, (uint64_t)seed);
-                        fill(two, m, kind, walls, 9);   /* what the file replaces */
-                        CHECK_EQ(scene_step(one, k), DEM_OK);
-                        CHECK_EQ(dem_checkpoint_write(one, path[0]), DEM_OK);
-                        CHECK_EQ(dem_checkpoint_read(two, path[0]), DEM_OK);
-                        CHECK_EQ(dem_checkpoint_write(two, path[1]), DEM_OK);
-                        CHECK(same(path[0], path[1]));
-                        for (i = 0; i < 10; i++) {
-                            CHECK_EQ(scene_step(one, 1), DEM_OK);
-                            CHECK_EQ(scene_step(two, 1), DEM_OK);
-                        }
-                        CHECK_EQ(dem_world_hash_get(one), dem_world_hash_get(two));
-                        CHECK_EQ(dem_checkpoint_write(one, path[0]), DEM_OK);
-                        CHECK_EQ(dem_checkpoint_write(two, path[1]), DEM_OK);
-                        CHECK(same(path[0], path[1]));
-                        dem_world_destroy(one);
-                        dem_world_destroy(two);
-                    }
-        remove(path[0]);
-        remove(path[1]);
     }
     TEST("impulses: the listed forces on a grain are m dv/dt - m g, for grains of every kind and for walls") {
         static const char path[] = "build/tmp/told.ckpt";

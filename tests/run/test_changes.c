@@ -60,14 +60,12 @@ typedef struct scene {
     field push;
 } scene;
 static int side = 13;                           /* grains along each side of the block */
-static int also;                                /* ledger and orientations, too */
 
 static dem_world_desc scene_desc(change what, scene *s, int threads) {
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.threads = threads;
     desc.gravity = at(0, 0, what == GRAVITY_TURNS ? 0 : -9.81);
     desc.dt = (dem_real)tick;
-    desc.ledger = desc.orientations = also;
     s->push.what = what;
     s->push.since = (BEFORE - 0.5)*tick;
     s->push.clock = 0;
@@ -968,28 +966,6 @@ int main(int argc, char **argv) {
             dem_world_destroy(w);
         }
         remove("build/tmp/gravity.dem");
-    }
-    TEST("a ledger and orientations kept from the start change no bit of positions, speeds and forces") {
-        int what, k;
-        side = 5;
-        for (what = 0; what < CHANGES; what++) {
-            scene s[2];
-            apart d;
-            int count[2];
-            for (k = 0; k < 2; k++) {
-                also = k;
-                scene_up_to(&s[k], (change)what, 1);
-                scene_change(&s[k], (change)what);
-                CHECK_EQ(scene_step(s[k].world, AFTER), DEM_OK);
-                count[k] = scene_ids(s[k].world, ids[k], ROOM);
-            }
-            also = 0;
-            CHECK_EQ(count[0], count[1]);
-            d = scene_apart(&s[0], ids[0], &s[1], ids[1], count[0]);
-            CHECK_NEAR(d.place + d.speed + d.spin + d.force, 0, 0);
-            for (k = 0; k < 2; k++) dem_world_destroy(s[k].world);
-        }
-        side = 13;
     }
     remove(saved);
     TEST("when time step and modulus change in mid-run, friction holds grains on a slope and overlaps shrink") {

@@ -163,11 +163,6 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("forty-two steps in one call, singly or in sevens are the same") {
-        const outcome a = bed(2, 42, 42), b = bed(2, 42, 1), c = bed(2, 42, 7);
-        check_same(&a, &b);
-        check_same(&a, &c);
-    }
     TEST("a frictionless ball in a sieve's hole keeps its spin, and fifty steps in one call or singly are the same") {
         uint64_t hash[2];
         int singly, i;

@@ -1,10 +1,9 @@
-/* Feeds and outlets: what comes in by number and by mass, what goes out, and that between the two
-   nothing is lost (for an hour of machine time: build/screener --study hour). The Makefile makes domains small
+/* Feeds and outlets: what comes in by number and by mass, and what goes out. The relation "counts" (tests/relations) and
+   build/screener --study hour check that between the two nothing is lost. The Makefile makes domains small
    (DEM_DOMAIN_BODIES), so that newcomers have neighbours in several. */
 #define DEM_IMPLEMENTATION
 #include "../../dem.h"
 #include "../../examples/sorting.h"
-#include "../../examples/tumbler.h"
 #include "../test.h"
 #include "../scene.h"
 
@@ -46,95 +45,6 @@ static void present(const dem_world *world, const dem_feed_desc *f, int *count) 
     for (i = 0; i < b.count; i++)
         for (k = 0; k < f->class_count; k++)
             count[k] += fabs((double)b.positions[4*i + 3] - (double)f->radius[k]) < 1e-6;
-}
-
-/* A tumbling machine of two decks: a weave above a floor, a ring of wall with an opening, outlets
-   beyond it. Steps; fed = present + left, by class, at every step. */
-typedef struct machine {
-    dem_world *world;
-    dem_feed feed;
-    dem_feed_desc desc;
-    dem_outlet outlet[2];
-    tumbler drive;
-    tumbler_part part[3];
-} machine;
-static void machine_build(machine *m, int threads) {
-    dem_world_desc desc = DEM_WORLD_DESC;
-    dem_sieve_desc sieve = DEM_SIEVE_DESC;
-    dem_outlet_desc outlet;
-    dem_material stuff;
-    dem_motion motion;
-    dem_wall walls[3];
-    dem_real vertices[2*25];
-    int32_t segments[2*24];
-    dem_profile ring;
-    dem_mesh floor;
-    static dem_real corners[12] = {-.13, -.13, 0, .13, -.13, 0, .13, .13, 0, -.13, .13, 0};
-    static int32_t triangles[6] = {0, 1, 2, 0, 2, 3};
-    int i;
-    memset(m, 0, sizeof *m);
-    desc.normal_law = DEM_NORMAL_LINEAR;
-    desc.gravity = at(0, 0, -9.81);
-    desc.dt = DEM_R(1e-4);
-    desc.threads = threads;
-    m->world = dem_world_create(&desc);
-    stuff = soft(m->world, 100);
-    m->drive.speed = 15;
-    m->drive.alpha = 0.03;
-    m->drive.beta = 0.02;
-    m->drive.eccentricity = 0.01;
-    for (i = 0; i < 3; i++) m->part[i].machine = &m->drive;
-    m->part[1].place[2] = 0.05;
-    sieve.kind = DEM_SIEVE_WIRES;
-    sieve.aperture = DEM_R(0.0065);
-    sieve.bar = DEM_R(0.002);
-    sieve.radius = DEM_R(0.12);
-    floor.vertex_count = 4; floor.triangle_count = 2;
-    floor.vertices = corners; floor.triangles = triangles;
-    for (i = 0; i < 25; i++) {                   /* of 24 segments of the ring, 6 are missing */
-        vertices[2*i] = (dem_real)(0.12*cos(6.2831853*i/24));
-        vertices[2*i + 1] = (dem_real)(0.12*sin(6.2831853*i/24));
-    }
-    ring.vertex_count = 25;
-    ring.segment_count = 18;
-    for (i = 0; i < 18; i++) { segments[2*i] = i; segments[2*i + 1] = i + 1; }
-    ring.vertices = vertices; ring.segments = segments;
-    walls[0] = dem_wall_mesh_add(m->world, stuff, &floor);
-    walls[1] = dem_wall_sieve_add(m->world, stuff, &sieve);
-    walls[2] = dem_wall_profile_add(m->world, stuff, &ring, DEM_EDGE_RESOLVED);
-    for (i = 0; i < 3; i++) {
-        motion = tumbler_motion(&m->part[i]);
-        CHECK_EQ(dem_wall_motion_set(m->world, walls[i], &motion), DEM_OK);
-    }
-    memset(&outlet, 0, sizeof outlet);
-    outlet.frame = walls[0];
-    outlet.beyond = DEM_R(0.123);
-    outlet.class_count = 3;
-    for (i = 0; i < 2; i++) {
-        outlet.box = box_of(-1, -1, i ? 0.05 : -1, 1, 1, i ? 1 : 0.05);
-        outlet.wanted_min = i ? DEM_R(0.0035) : 0;
-        outlet.wanted_max = i ? 0 : DEM_R(0.0035);
-        outlet.radius[0] = DEM_R(0.002); outlet.radius[1] = DEM_R(0.003);
-        outlet.radius[2] = DEM_R(0.004);
-        m->outlet[i] = dem_outlet_add(m->world, &outlet);
-    }
-    m->desc = feed_of(stuff, 40);
-    m->desc.box = box_of(-0.05, -0.05, 0.1, 0.05, 0.05, 0.12);
-    m->desc.round = 1;
-    m->feed = dem_feed_add(m->world, &m->desc);
-}
-static int machine_balanced(const machine *m) {
-    dem_feed_state f;
-    dem_outlet_state o[2];
-    const dem_body_counts b = dem_body_counts_get(m->world);
-    int here[3], k, ok = b.inserted == b.present + b.removed + b.left;
-    dem_feed_get(m->world, m->feed, &f);
-    dem_outlet_get(m->world, m->outlet[0], &o[0]);
-    dem_outlet_get(m->world, m->outlet[1], &o[1]);
-    present(m->world, &m->desc, here);
-    for (k = 0; k < 3; k++)
-        ok = ok && f.fed[k] == (uint64_t)here[k] + o[0].count[k] + o[1].count[k];
-    return ok && b.left == o[0].total + o[1].total && f.total == b.inserted;
 }
 
 /* Contacts of bodies with others, in slots after the first `count`. */
@@ -514,24 +424,6 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("fed = present + left, by class, at every step of a rotating drum machine") {
-        machine m;
-        sorting sorted;
-        int i, bad = 0;
-        const int steps = 60000;                 /* 6 s */
-        machine_build(&m, 1);
-        for (i = 0; i < steps && !bad; i++) {
-            if (scene_step(m.world, 1) != DEM_OK) bad = 1;
-            if (!machine_balanced(&m)) bad = 1;
-        }
-        CHECK_EQ(bad, 0);
-        CHECK_EQ(sorting_get(m.world, m.outlet, 2, &sorted), DEM_OK);
-        CHECK(dem_body_counts_get(m.world).left > 20);
-        CHECK_EQ(sorted.silent, 0);
-        CHECK(sorted.efficiency_number > 0.5);
-        dem_world_destroy(m.world);
-    }
-
     TEST("inserted grains join the neighbour list and collide as with a list rebuilt for each, for every search") {
         static const dem_search searches[] = {DEM_SEARCH_GRID, DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_LINKED_LIST};
         uint64_t hash[3], rebuilds[2] = {0, 0};
@@ -630,34 +522,6 @@ int main(int argc, char **argv) {
         CHECK(deepest < 0.5e-3 + 0.2*1e-5);
         CHECK((int)(dem_counters_get(world).rebuilds - rebuilds) <= 1600/64 + 8);
         dem_world_destroy(world);
-    }
-
-    TEST("a machine with feeds resumes from a checkpoint bit for bit, with any number of threads") {
-        static const char path[] = "build/tmp/feed.ckpt";
-        machine a, b;
-        dem_feed_state fa, fb;
-        dem_outlet_state oa, ob;
-        machine_build(&a, 1);
-        machine_build(&b, 4);
-        CHECK_EQ(scene_step(a.world, 15000), DEM_OK);
-        CHECK_EQ(dem_checkpoint_write(a.world, path), DEM_OK);
-        CHECK_EQ(dem_checkpoint_read(b.world, path), DEM_OK);
-        CHECK_EQ(scene_step(a.world, 3000), DEM_OK);
-        CHECK_EQ(scene_step(b.world, 3000), DEM_OK);
-        CHECK(dem_world_hash_get(a.world) == dem_world_hash_get(b.world));
-        dem_feed_get(a.world, a.feed, &fa);
-        dem_feed_get(b.world, b.feed, &fb);
-        CHECK(memcmp(&fa, &fb, sizeof fa) == 0);
-        CHECK(fa.total > 60);
-        dem_outlet_get(a.world, a.outlet[1], &oa);
-        dem_outlet_get(b.world, b.outlet[1], &ob);
-        CHECK(memcmp(&oa, &ob, sizeof oa) == 0);
-        b.desc.seed = 12;
-        CHECK(dem_feed_add(b.world, &b.desc).id > 0);                  /* another scene now */
-        CHECK_EQ(dem_checkpoint_read(b.world, path), DEM_ERROR_FORMAT);
-        dem_world_destroy(a.world);
-        dem_world_destroy(b.world);
-        remove(path);
     }
 
     TEST("a mixture feeds classes of different material, shape and size distribution in their fractions and "

@@ -666,39 +666,6 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
-    TEST("a sieve of wires has the same bits after a checkpoint, and another sieve fails to read it") {
-        static const char path[] = "build/tmp/sieve.ckpt";
-        uint64_t hash[2] = {0, 1};
-        int i;
-        for (i = 0; i < 3; i++) {
-            dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, i == 2 ? 0.011 : 0.01, 0.004);
-            dem_world *world = world_of(9.81, 2e-5);
-            dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
-            int k;
-            dem_wall_sieve_add(world, stuff, &s);
-            if (i == 0)
-                for (k = 0; k < 60; k++)
-                    dem_sphere_add(world, stuff, DEM_R(0.0052), at(0.0107*(k%10), 0.0111*(k/10),
-                                                                   0.01 + 0.0001*k));
-            if (i == 0) {
-                scene_step(world, 4000);
-                CHECK(dem_counters_get(world).wall_contacts > 30);
-                CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
-            } else if (i == 1) CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
-            else {
-                CHECK_EQ(dem_checkpoint_read(world, path), DEM_ERROR_FORMAT);
-                CHECK_STR(dem_world_error_get(world), "another scene");
-            }
-            if (i < 2) {
-                scene_step(world, 1000);
-                hash[i] = dem_world_hash_get(world);
-            }
-            dem_world_destroy(world);
-        }
-        CHECK(hash[0] == hash[1]);
-        remove(path);
-    }
-
     TEST("sieves with bad sizes are rejected with the size named") {
         dem_world *world = world_of(0, 0);
         dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
