@@ -4578,7 +4578,7 @@ typedef struct demi_kept_more {
     dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
     dem_real along;                /* rotate the normal by `along`, 1/m, instead of by `bend` */
     dem_vec3 aside;                /* elastic force across the normal, over that along it */
-    dem_real inset;                /* the normal force acts at inset*arm_a */
+    dem_vec3 outset;               /* m, to the contact point from where the normal force acts */
     dem_vec3 spread;               /* m, from the centre of pressure to this point */
     dem_real couple;               /* m: moment about the normal, over the normal force */
     /* if a polyhedron touches several walls of one surface in one contact: */
@@ -4606,7 +4606,7 @@ typedef struct demi_kept {
                                       -2: memory is set (>>flush) */
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
-    int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
+    int32_t odd;                   /* 0: `more` counts as 0, whatever it contains */
     int32_t row;                   /* its coefficients, see demi_kept_row; -1: no law was asked */
     double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 normal, arm_a;        /* unit, a -> b; m, from a's centre to the contact point */
@@ -20890,7 +20890,6 @@ DEM_INLINE demi_kept_more *demi_kept_odd(demi_kept *c) {
     if (c->odd) return &c->more;
     c->odd = 1;
     memset(&c->more, 0, sizeof c->more);
-    c->more.inset = 1;
     return &c->more;
 }
 /* Sets bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
@@ -23467,7 +23466,7 @@ static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real le
         const dem_real l = (dem_real)demi_part_equal(p) + edge;
         c->overlap = left*l;
         c->slope = l/(h + edge);
-        demi_kept_odd(c)->inset = 1 - left;
+        demi_kept_odd(c)->outset = demi_scale(c->arm_a, left);
     }
 }
 
@@ -23526,7 +23525,7 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
     c->arm_a = dem_quat_rotate(egg->q, at);
-    demi_kept_odd(c)->inset = 1;
+    demi_kept_odd(c)->outset = demi_v(0, 0, 0);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
         c->arm_a = demi_add(c->arm_a, gap);
@@ -23676,6 +23675,7 @@ static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, co
                                    const demi_touching *place, demi_kept *c) {
     demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
                      c);
+    c->arm_a = demi_add(p->centre, c->arm_a);
 }
 /* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
    set so large that demi_wall_r_eff returns the radius of these grains. */
@@ -24798,11 +24798,11 @@ static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rate
 /* A tile of persistent contacts: what only these need, and the rows for the stages of >>respond. A
    wall is a body b with zero arm: velocities are relative to its surface at the contact point. */
 typedef struct demi_kept_tile {
-    demi_rows arm[2], mid[2];      /* m, of a and b: now; at mid-step */
+    demi_rows arm[2], mid[2], outset;      /* m, of a and b: now; at mid-step; demi_kept_more */
     demi_rows spin[2], spun[2];    /* rad/s, of a and b: likewise */
     dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: minus share */
     dem_real still[DEMI_ROOM];      /* N, elastic force, if any is lifted */
-    dem_real couple[DEMI_ROOM], outset[DEMI_ROOM];                   /* outset: 1 - inset */
+    dem_real couple[DEMI_ROOM];
     dem_real base[DEMI_COEFS][DEMI_ROOM], root[2][DEMI_ROOM];      /* coefficients without slope */
     dem_real slope[DEMI_ROOM];
     /* for 1/m_eff, if not all bodies are spheres: of a and b */
@@ -24924,7 +24924,7 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     t->grip[q] = k->grip;
     t->lift[q] = k->lift - k->share;
     t->couple[q] = k->odd ? k->more.couple : 0;
-    t->outset[q] = k->odd ? 1 - k->more.inset : 0;
+    demi_rows_put(&t->outset, q, k->odd ? k->more.outset : demi_v(0, 0, 0));
     if (!t->shaped) return;
     demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, demi_kept_felt(k)), 0, t, q);
     demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, demi_kept_felt(k)), 1, t, q);
@@ -24934,11 +24934,11 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
 static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
         t->rows.memory[0], t->rows.coef[0], t->base[0], t->slope, t->share, t->grip, t->lift,
-        t->couple, t->outset, t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
-    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, DEMI_COEFS, 1, 1, 1, 1, 1, 1,
+        t->couple, t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
+    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, DEMI_COEFS, 1, 1, 1, 1, 1,
         2, t->shaped ? 8 : 0, t->shaped ? 6 : 0, t->shaped ? 2 : 0};
     demi_rows *const triples[] = {&t->rows.rate, &t->rows.gone, t->arm, t->arm + 1, t->mid,
-        t->mid + 1, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
+        t->mid + 1, &t->outset, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
     const int last = t->count - 1;
     int k, e, q;
     for (q = last + 1; q < full; q++) t->filled[q] = 0;
@@ -25012,8 +25012,8 @@ DEM_INLINE void demi_kept_answer_one(demi_kept_tile *DEMI_RESTRICT t, int q, int
     if (rolls) moment = demi_add(moment, demi_scale(demi_row(t->rows.moment, q), t->grip[q]));
     demi_row_put(t->rows.force, q, force);
     demi_row_put(t->rows.moment, q, moment);
-    demi_row_put(t->rows.torque[0], q, demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
-                                     demi_add(force, demi_scale(push, t->outset[q]))), moment));
+    demi_row_put(t->rows.torque[0], q, demi_add(demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
+                 force), demi_cross(demi_rows_at(&t->outset, q), push)), moment));
     demi_row_put(t->rows.torque[1], q,
                  demi_scale(demi_add(demi_cross(demi_rows_at(&t->arm[1], q), force), moment), -1));
 }
@@ -32043,10 +32043,10 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
    normal force has the same moment; that of impulses acts at the arm. */
 static dem_vec3 demi_wall_branch(const dem_world *w, const demi_kept *c) {
     const int pressing = demi_response_is(w, DEMI_PRESSING);
-    const dem_real inset = pressing && c->odd ? c->more.inset : 1;
-    dem_real past = c->overlap/c->slope - (1 - inset)*demi_dot(c->arm_a, c->normal);
+    const dem_vec3 out = pressing && c->odd ? c->more.outset : demi_v(0, 0, 0);
+    dem_real past = c->overlap/c->slope - demi_dot(out, c->normal);
     if (c->corners) past = pressing && c->overlap > 0 ? 0 : c->overlap/2;
-    return demi_sub(demi_scale(c->arm_a, inset), demi_scale(c->normal, past));
+    return demi_sub(demi_sub(c->arm_a, out), demi_scale(c->normal, past));
 }
 /* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
    users see. branch: m, from the centre of a to the contact point. */

@@ -134,11 +134,11 @@ static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rate
 /* A tile of persistent contacts: what only these need, and the rows for the stages of >>respond. A
    wall is a body b with zero arm: velocities are relative to its surface at the contact point. */
 typedef struct demi_kept_tile {
-    demi_rows arm[2], mid[2];      /* m, of a and b: now; at mid-step */
+    demi_rows arm[2], mid[2], outset;      /* m, of a and b: now; at mid-step; demi_kept_more */
     demi_rows spin[2], spun[2];    /* rad/s, of a and b: likewise */
     dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: minus share */
     dem_real still[DEMI_ROOM];      /* N, elastic force, if any is lifted */
-    dem_real couple[DEMI_ROOM], outset[DEMI_ROOM];                   /* outset: 1 - inset */
+    dem_real couple[DEMI_ROOM];
     dem_real base[DEMI_COEFS][DEMI_ROOM], root[2][DEMI_ROOM];      /* coefficients without slope */
     dem_real slope[DEMI_ROOM];
     /* for 1/m_eff, if not all bodies are spheres: of a and b */
@@ -260,7 +260,7 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     t->grip[q] = k->grip;
     t->lift[q] = k->lift - k->share;
     t->couple[q] = k->odd ? k->more.couple : 0;
-    t->outset[q] = k->odd ? 1 - k->more.inset : 0;
+    demi_rows_put(&t->outset, q, k->odd ? k->more.outset : demi_v(0, 0, 0));
     if (!t->shaped) return;
     demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, demi_kept_felt(k)), 0, t, q);
     demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, demi_kept_felt(k)), 1, t, q);
@@ -270,11 +270,11 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
 static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
         t->rows.memory[0], t->rows.coef[0], t->base[0], t->slope, t->share, t->grip, t->lift,
-        t->couple, t->outset, t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
-    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, DEMI_COEFS, 1, 1, 1, 1, 1, 1,
+        t->couple, t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
+    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, DEMI_COEFS, 1, 1, 1, 1, 1,
         2, t->shaped ? 8 : 0, t->shaped ? 6 : 0, t->shaped ? 2 : 0};
     demi_rows *const triples[] = {&t->rows.rate, &t->rows.gone, t->arm, t->arm + 1, t->mid,
-        t->mid + 1, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
+        t->mid + 1, &t->outset, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
     const int last = t->count - 1;
     int k, e, q;
     for (q = last + 1; q < full; q++) t->filled[q] = 0;
@@ -348,8 +348,8 @@ DEM_INLINE void demi_kept_answer_one(demi_kept_tile *DEMI_RESTRICT t, int q, int
     if (rolls) moment = demi_add(moment, demi_scale(demi_row(t->rows.moment, q), t->grip[q]));
     demi_row_put(t->rows.force, q, force);
     demi_row_put(t->rows.moment, q, moment);
-    demi_row_put(t->rows.torque[0], q, demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
-                                     demi_add(force, demi_scale(push, t->outset[q]))), moment));
+    demi_row_put(t->rows.torque[0], q, demi_add(demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
+                 force), demi_cross(demi_rows_at(&t->outset, q), push)), moment));
     demi_row_put(t->rows.torque[1], q,
                  demi_scale(demi_add(demi_cross(demi_rows_at(&t->arm[1], q), force), moment), -1));
 }

@@ -32,6 +32,7 @@ static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, co
                                    const demi_touching *place, demi_kept *c) {
     demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
                      c);
+    c->arm_a = demi_add(p->centre, c->arm_a);
 }
 /* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
    set so large that demi_wall_r_eff returns the radius of these grains. */

@@ -51,7 +51,7 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
     c->arm_a = dem_quat_rotate(egg->q, at);
-    demi_kept_odd(c)->inset = 1;
+    demi_kept_odd(c)->outset = demi_v(0, 0, 0);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
         c->arm_a = demi_add(c->arm_a, gap);

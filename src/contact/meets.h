@@ -83,6 +83,6 @@ static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real le
         const dem_real l = (dem_real)demi_part_equal(p) + edge;
         c->overlap = left*l;
         c->slope = l/(h + edge);
-        demi_kept_odd(c)->inset = 1 - left;
+        demi_kept_odd(c)->outset = demi_scale(c->arm_a, left);
     }
 }

@@ -594,7 +594,6 @@ DEM_INLINE demi_kept_more *demi_kept_odd(demi_kept *c) {
     if (c->odd) return &c->more;
     c->odd = 1;
     memset(&c->more, 0, sizeof c->more);
-    c->more.inset = 1;
     return &c->more;
 }
 /* Sets bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;

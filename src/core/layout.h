@@ -172,7 +172,7 @@ typedef struct demi_kept_more {
     dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
     dem_real along;                /* rotate the normal by `along`, 1/m, instead of by `bend` */
     dem_vec3 aside;                /* elastic force across the normal, over that along it */
-    dem_real inset;                /* the normal force acts at inset*arm_a */
+    dem_vec3 outset;               /* m, to the contact point from where the normal force acts */
     dem_vec3 spread;               /* m, from the centre of pressure to this point */
     dem_real couple;               /* m: moment about the normal, over the normal force */
     /* if a polyhedron touches several walls of one surface in one contact: */
@@ -200,7 +200,7 @@ typedef struct demi_kept {
                                       -2: memory is set (>>flush) */
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
-    int32_t odd;                   /* 0: `more` counts as 0, with inset 1, whatever it contains */
+    int32_t odd;                   /* 0: `more` counts as 0, whatever it contains */
     int32_t row;                   /* its coefficients, see demi_kept_row; -1: no law was asked */
     double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 normal, arm_a;        /* unit, a -> b; m, from a's centre to the contact point */

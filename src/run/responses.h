@@ -98,10 +98,10 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
    normal force has the same moment; that of impulses acts at the arm. */
 static dem_vec3 demi_wall_branch(const dem_world *w, const demi_kept *c) {
     const int pressing = demi_response_is(w, DEMI_PRESSING);
-    const dem_real inset = pressing && c->odd ? c->more.inset : 1;
-    dem_real past = c->overlap/c->slope - (1 - inset)*demi_dot(c->arm_a, c->normal);
+    const dem_vec3 out = pressing && c->odd ? c->more.outset : demi_v(0, 0, 0);
+    dem_real past = c->overlap/c->slope - demi_dot(out, c->normal);
     if (c->corners) past = pressing && c->overlap > 0 ? 0 : c->overlap/2;
-    return demi_sub(demi_scale(c->arm_a, inset), demi_scale(c->normal, past));
+    return demi_sub(demi_sub(c->arm_a, out), demi_scale(c->normal, past));
 }
 /* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
    users see. branch: m, from the centre of a to the contact point. */
