@@ -22640,7 +22640,7 @@ typedef struct demi_egg_tile {
     double found[DEMI_EGGS];
     double to[DEMI_EGGS], f[DEMI_EGGS], w0[DEMI_EGGS], both[DEMI_EGGS];
     double overlap[DEMI_EGGS], slope[DEMI_EGGS], r_eff[DEMI_EGGS], deep[DEMI_EGGS];
-    double s[3][DEMI_EGGS], v[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
+    double s[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
     int32_t entry[DEMI_EGGS], from[DEMI_EGGS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
     const demi_kept *old, *after;  /* first old contact of body a or of a later body; the one after
@@ -22678,7 +22678,6 @@ DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet 
     t->r_eff[q] = t->equal[0][q]*t->equal[1][q]/radii;
     t->deep[q] = (1 - w0)/least;
     demi_eggs_put(t->s, q, m.s);
-    demi_eggs_put(t->v, q, m.v);
     demi_eggs_put(t->normal, q, demi_d3_scale(m.s, per));
     demi_eggs_put(t->point, q, demi_d3_scale(m.a, 1 - m.l));
 }
@@ -22809,14 +22808,14 @@ static int demi_eggs_meet(demi_egg_tile *t, int k) {
     }
     return t->f[k] < 1 || (t->range[k] > 0 && t->d[k]*(1 - 1/t->w0[k]) < t->range[k]);
 }
-/* Returns the overlap of [RUB15] 3.2 for row k, m. */
+/* Returns the overlap of [RUB15] 3.2 for row k, m. Evaluates the function once more: with K^-1 QB s
+   from before the last step of l, the error would be of the order of this step. */
 static double demi_eggs_chord(demi_egg_tile *t, int k) {
+    const demi_sym A = demi_egg_matrix(t, 0, k);
     demi_meet m;
     m.l = t->to[k];
-    m.f = m.fa = m.fb = t->f[k];
-    m.s = demi_eggs_at(t->s, k);
-    m.v = demi_eggs_at(t->v, k);
-    return demi_meet_chord(&m, demi_egg_matrix(t, 0, k));
+    demi_meet_at(A, demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k), &m);
+    return demi_meet_chord(&m, A);
 }
 
 #ifndef DEM_NO_POLYHEDRA

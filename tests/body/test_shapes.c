@@ -496,6 +496,49 @@ static void meeting_tests(void) {
         }
     }
 
+    TEST("the chord of two ellipsoids that slide past each other is that of where they are, in either order") {
+        int flip, i;
+        for (flip = 0; flip < 2; flip++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_ellipsoid e[2];
+            dem_body body[2];
+            dem_world *world;
+            dem_material m;
+            double worst = 0;
+            desc.dt = DEM_R(1e-6);
+            desc.orientations = 1;
+            desc.ellipsoid_overlap = DEM_OVERLAP_CHORD;
+            world = dem_world_create(&desc);
+            m = scene_material(world, 1e6, 0.5, 0.5, 0);
+            e[0].semi_axes = at(1e-3, 6e-4, 8e-4);
+            e[1].semi_axes = at(7e-4, 1e-3, 9e-4);
+            for (i = 0; i < 2; i++) {
+                const int k = flip ? 1 - i : i;
+                body[k] = dem_body_add(world, m, dem_shape_ellipsoid_add(world, e[k].semi_axes),
+                                       at(0.0013*k, 0, 4e-4*k),
+                                       k ? dem_quat_make(DEM_R(0.8), 0, 0, DEM_R(0.6))
+                                         : dem_quat_make(DEM_R(0.8), DEM_R(0.6), 0, 0));
+                scene_move(world, body[k], at(k ? -1 : 1, 0, 0), at(0, 0, 0));
+            }
+            for (i = 0; i < 150; i++) {
+                dem_contact_info c;
+                int k;
+                CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+                for (k = 0; k < 2; k++) {
+                    const dem_body_state s = scene_state(world, body[k]);
+                    e[k].position = s.position;
+                    e[k].orientation = s.orientation;
+                }
+                if (dem_contacts_get(world, &c, 1) == 1) {
+                    const double chord = (double)dem_ellipsoids_contact_get(&e[0], &e[1], 0).depth_chord;
+                    worst = fmax(worst, fabs((double)c.overlap/chord - 1));
+                }
+            }
+            CHECK(worst > 0 && worst < (SINGLE ? 2e-3 : 1e-12));
+            dem_world_destroy(world);
+        }
+    }
+
     TEST("an ellipsoid on a huge one acts as on a plane: depth is its height less the gap") {
         uint64_t seed = 8;
         int i;

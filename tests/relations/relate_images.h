@@ -64,6 +64,8 @@ static void rel_map_scene(rel_scene *to, const rel_scene *from, const rel_map *m
             const rel_field *f = &rel_calls[op->call].fields[j];
             const char *defaults = (const char *)rel_calls[op->call].defaults;
             dem_vec3 x = {0, 0, 0};
+            if (f->nature == REL_ORIENTATION && rel_given_in(op, "shape") && !rel_find(op, f->name))
+                rel_slot(op, f->name)->v[0] = 1;           /* the axes of a shape have directions */
             if (f->type != REL_VEC || (f->nature != REL_POINT && f->nature != REL_VECTOR && f->nature != REL_AXIAL) ||
                 rel_find(op, f->name)) continue;
             if (defaults) memcpy(&x, defaults + f->at, sizeof x);
@@ -489,7 +491,27 @@ static int rel_not_begun(rel_case *c) {
     return rel_near(c, &rel_image, &how, &rel_same, "with a motion that has not begun");
 }
 /* ---- belts ---- */
-/* A plane that moves in itself and a plane at rest whose surface moves push grains in the same way. */
+/* Gives a wall a motion that leaves it where it is. */
+static void rel_stay(rel_scene *s, int wall) {
+    static const double rows[2][12] = {{0, 1, 0, 0, 0, 0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0}};
+    static const struct { const char *name; int row, at, count; } lists[] = {
+        {"times", 0, 0, 2}, {"places", 0, 2, 6}, {"turns", 1, 0, 8}, {"loads", 0, 2, 2}};
+    rel_op *op = rel_more(s, REL_TABLE, 0);
+    int i;
+    rel_put(op, "wall", wall);
+    rel_put(op, "kind", DEM_MOTION_TABLE);
+    for (i = 0; i < 4; i++) {
+        rel_set *v = rel_slot(op, lists[i].name);
+        if (s->pool_count + lists[i].count > REL_POOL) exit(3);
+        v->count = lists[i].count;
+        v->at = s->pool_count;
+        memcpy(s->pool + v->at, rows[lists[i].row] + lists[i].at, (size_t)v->count*sizeof *s->pool);
+        s->pool_count += v->count;
+    }
+}
+/* A plane that moves in itself and a plane at rest whose surface moves push grains in the same way. "The contact
+   history crosses seams" between walls at rest relative to each other, and surfaces that move against each other "are
+   not joined" (docs/theory_surfaces.md). So the belt has a motion, too: a table that leaves it where it is. */
 static int rel_belt_or_wall(rel_case *c) {
     /* which may follow a wall */
     static const int moves[] = {REL_MOTION, REL_TABLE, REL_BELT, REL_RAIL, REL_OUTLET, REL_JOINT, -1};
@@ -511,6 +533,7 @@ static int rel_belt_or_wall(rel_case *c) {
     op = rel_more(&rel_own, REL_BELT, 0);
     rel_put(op, "wall", i);
     rel_put3(op, "velocity", u[0], u[1], u[2]);
+    rel_stay(&rel_own, i);
     if (!rel_instead(c) || !c->base.wall_contacts) return REL_SKIPPED;
     rel_put(&rel_image.op[0], "dt", rel_find(&rel_own.op[0], "dt")->v[0]);
     op = rel_more(&rel_image, REL_MOTION, 0);

@@ -84,6 +84,25 @@ int main(int argc, char **argv) {
         rel_drop_ops(&scene, before.count - 1, before.count);
         CHECK_EQ(scene.count, before.count - 1);
     }
+    TEST("the image of a body of a shape is rotated, also if its orientation is the default one") {
+        rel_map m = rel_same;
+        int i, k, seen = 0;
+        m.m[0][0] = m.m[1][1] = 0;             /* by 90 degrees about z */
+        m.m[0][1] = -1;
+        m.m[1][0] = 1;
+        CHECK(draw_until(&before, has_three, 30, 1));
+        for (i = 0; i < before.count; i++)
+            for (k = before.op[i].count - 1; k >= 0 && before.op[i].call == REL_A_BODY; k--)
+                if (!strcmp(rel_field_at(&before.op[i], k)->name, "orientation")) rel_drop_set(&before.op[i], k);
+        rel_map_scene(&scene, &before, &m);
+        for (i = 0; i < scene.count; i++) {
+            const rel_set *q = scene.op[i].call == REL_A_BODY ? rel_given_in(&scene.op[i], "orientation") : 0;
+            const int shaped = scene.op[i].call == REL_A_BODY && rel_given_in(&scene.op[i], "shape");
+            CHECK_EQ(q != 0, shaped);
+            if (q) { seen++; CHECK_NEAR(q->v[0], sqrt(0.5), 1e-15); CHECK_NEAR(q->v[3], sqrt(0.5), 1e-15); }
+        }
+        CHECK(seen);
+    }
     TEST("each row is drawn in 3000 scenes, with what it needs and without what it excludes") {
         static int drawn[REL_ROWS];
         int seed, i, k, bad = 0;
