@@ -22056,17 +22056,17 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     }
 }
 /* Adds a point of a body above one piece of a surface of revolution, and returns its gap, m; 1e300
-   if it is beside the piece. n: unit, into the wall, at the point's line; out, up, level: as
-   below. */
+   if it is beside the piece. At an end where the surface bends towards the body, a point that the
+   next piece lets overlap is still above this one. n: unit, into the wall; the rest: as below. */
 static double demi_generator_add(const demi_generator *l, demi_d3 n, demi_d3 x0, demi_d3 x,
                                  double out, double up, double level, int32_t element,
                                  demi_gaps *gaps) {
     const demi_d3 y = demi_d3_add(x0, x);
     const double e = l->b - l->a, f = l->h - l->g, across = demi_off_axis(n);
-    const double size = sqrt(e*e + f*f);
+    const double size = sqrt(e*e + f*f), past = 0.01*size*demi_d3_length(x);
     const double r = across > 0 ? fabs(n.x*y.x + n.y*y.y)/across : demi_off_axis(y);
     const double gap = out*r + up*y.z - level, along = (r - l->a)*e + (y.z - l->g)*f;
-    if (along < 0 || along > e*e + f*f) return 1e300;
+    if (along < l->open[0]*past - past || along > e*e + f*f + past - l->open[1]*past) return 1e300;
     /* deeper than its distance from an end: the ring there, or the next piece, gives the gap */
     if (gap < 0 && ((l->open[0] && along < -gap*size) ||
                     (l->open[1] && e*e + f*f - along < -gap*size))) return 1e300;

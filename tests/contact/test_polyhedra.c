@@ -383,6 +383,41 @@ int main(int argc, char **argv) {
             }
     }
 
+    TEST("impulses: a cube that slides on the floor of a cup stops at its wall, whatever it overlaps") {
+        static const dem_real up[4] = {1, 0, 0, 0}, r[4] = {0, DEM_R(0.007), DEM_R(0.007), 0};
+        static const dem_real z[4] = {0, 0, DEM_R(0.01), 0};
+        static const double deep[5] = {-1e-9, 0, 2e-19, 1e-9, 3e-7};    /* m */
+        const dem_real h = DEM_R(0.00063), one = 1;
+        const dem_real corners[24] = {-h, -h, -h, h, -h, -h, -h, h, -h, h, h, -h,
+                                      -h, -h, h, h, -h, h, -h, h, h, h, h, h};
+        int k;
+        for (k = 0; k < 5; k++) {
+            const dem_vec3 x = {DEM_R(0.0061), 0, h - (dem_real)deep[k]}, v = {2, 0, 0}, still = {0, 0, 0};
+            dem_world_desc d = DEM_WORLD_DESC;
+            dem_material_desc material = DEM_MATERIAL_DESC;
+            dem_material m;
+            dem_shape cube;
+            dem_body_state s;
+            dem_world *w;
+            d.response = DEM_RESPONSE_IMPULSES;
+            d.dt = DEM_R(1e-4);
+            d.tolerance = DEM_R(1e-6);
+            d.law_range = DEM_R(5e-4);
+            w = dem_world_create(&d);
+            material.density = 2000;
+            material.restitution = 0;
+            m = dem_material_add(w, &material);
+            cube = dem_shape_polyhedron_add(w, 8, corners);
+            dem_wall_revolved_add(w, m, still, dem_vec3_make(0, 0, 1), 4, r, z);
+            dem_bodies_add(w, m, cube, 1, &x.x, up, &v.x, &still.x, &one);
+            CHECK(dem_world_step(w, 5) == DEM_OK);
+            CHECK(dem_body_get(w, dem_body_id_get(w, 0), &s) == DEM_OK);
+            CHECK_NEAR((double)s.velocity.x, 0, 0.01);
+            CHECK_NEAR((double)s.velocity.z, 0, 0.01);      /* 0.75 m/s without its lower corners */
+            dem_world_destroy(w);
+        }
+    }
+
     TEST("an eight-sided prism wedged into a tube touches all around, and a plank at both ends") {
         int k;
         for (k = 0; k < 2; k++) {
