@@ -123,7 +123,7 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
             far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*
                 c[i].more.rate/c[i].more.area;
             c[k].lift -= far*2*t*c[k].weight*d;
-            if (rate > 0)
+            if (rate > 0 && !(w->margin.reach > 0))
                 demi_kept_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
                                   own*c[k].more.rate/c[k].more.area*c[i].weight*e*e));
         }
@@ -171,9 +171,10 @@ static int demi_is_cluster(const dem_world *w, int body) {
        E_i = s_i U'(d_i) d_i/p,          dE_k/dd_k = s_k U'(d_k) (1 + 2/p (A_k - d_k^2)/A_k)
        dE_i/dd_k = -E_i 2 t_ik w_k d_k/A_i,    dE_i/dt_ik = -E_i w_k d_k^2/A_i
    Neglected: the rotation of the normal of an ellipsoid, or at an edge of a polyhedron, against a
-   cluster's sphere. If the centre of a sphere is within a tenth of its radius of what it rolls
-   around, its normal rotates no faster than at that distance. Pieces of unions are not merged:
-   their energies add.
+   cluster's sphere; and `aside` for laws with a range, which attract: their U is no such power, so
+   that the torques of two contacts would not cancel. If the centre of a sphere is within a tenth of
+   its radius of what it rolls around, its normal rotates no faster than at that distance. Pieces of
+   unions are not merged: their energies add.
 
    lift_k may be slightly negative if other contacts are far deeper; no mean that is independent of
    the number of contacts avoids this. Contacts within the range of a law that do not overlap keep

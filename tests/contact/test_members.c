@@ -105,6 +105,11 @@ static dem_world *mixed_bed(int kind, int lone, int threads) {
     return w;
 }
 
+/* A spring, and an attraction that is the same at every distance. */
+static void attracts(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    (void)memory;
+    f->normal = (c->overlap > 0 ? 500*c->overlap : 0) - DEM_R(0.03);
+}
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -215,6 +220,48 @@ int main(int argc, char **argv) {
                 const dem_vec3 v = demi_add(s.velocity, demi_cross(s.spin, arm));
                 const dem_vec3 u = demi_add(o.velocity, demi_cross(o.spin, other));
                 CHECK_NEAR(u.z - v.z, e*0.1, 2e-3*0.1);
+            }
+            dem_world_destroy(w);
+        }
+    }
+    TEST("two clusters under a law that attracts across gaps keep their momentum and their angular momentum, merged or "
+         "separate") {
+        const dem_real place[] = {DEM_R(-4e-4), 0, DEM_R(2e-4), DEM_R(4e-4), 0, 0, 0, DEM_R(5e-4), 0};
+        int separate, k;
+        for (separate = 0; separate < 2; separate++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_cluster_desc three = DEM_CLUSTER_DESC;
+            dem_totals before, after;
+            dem_body_state s;
+            dem_shape shape;
+            dem_material m;
+            dem_world *w;
+            dem_body body;
+            desc.law = attracts;
+            desc.law_stiffness = 500;
+            desc.law_range = DEM_R(3e-4);
+            desc.cluster_contacts = separate ? DEM_CLUSTER_CONTACTS_SEPARATE : DEM_CLUSTER_CONTACTS_MERGED;
+            desc.dt = DEM_R(1e-6);
+            w = dem_world_create(&desc);
+            m = scene_material(w, 1e6, 1, 0, 0);
+            three.count = 3;
+            three.positions = place;
+            three.radius = DEM_R(8e-4);
+            shape = dem_shape_cluster_add(w, &three);
+            dem_body_add(w, m, shape, at(0, 0, 0), dem_quat_make(1, DEM_R(0.3), DEM_R(-0.2), DEM_R(0.6)));
+            body = dem_body_add(w, m, shape, at(2.6e-3, 3e-4, 1e-4),
+                                dem_quat_make(1, DEM_R(-0.1), DEM_R(0.4), DEM_R(0.2)));
+            s = scene_state(w, body);
+            s.velocity = at(-0.5, 0.02, 0.1);
+            dem_body_set(w, body, &s);
+            CHECK_EQ(scene_step(w, 1), DEM_OK);
+            before = dem_totals_get(w);
+            CHECK_EQ(scene_step(w, 3000), DEM_OK);
+            after = dem_totals_get(w);
+            for (k = 0; k < 3; k++) {
+                const double part = DEMI_SINGLE ? 1e-2 : 1e-11;
+                CHECK_NEAR(after.momentum[k], before.momentum[k], fabs(before.momentum[0])*part);
+                CHECK_NEAR(after.angular[k], before.angular[k], fabs(before.angular[1])*part);
             }
             dem_world_destroy(w);
         }
