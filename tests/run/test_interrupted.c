@@ -94,11 +94,12 @@ static uint64_t digest(const char *path) {
     fclose(f);
     return demi_hash(DEMI_HASH_START, text, n);
 }
-/* Calls that only look, and a call that takes no step. */
+/* Calls that only look, and a call that takes no step: it writes the output that is due, if that has failed. */
 static void look(dem_world *world) {
     const uint64_t hash = dem_world_hash_get(world);
-    const uint64_t file = digest(csv);
+    uint64_t file;
     CHECK_EQ(dem_world_step(world, 0), DEM_OK);
+    file = digest(csv);
     CHECK_EQ(dem_bodies_csv_write(world, looked), DEM_OK);
     dem_ledger_get(world);
     dem_totals_get(world);
