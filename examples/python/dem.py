@@ -29,11 +29,13 @@ import functools
 import gc
 import hashlib
 import html
+import io
 import math
 import operator
 import os
 import platform
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -44,7 +46,7 @@ import weakref
 try:
     import _signal              # signal.signal takes 15 us
 except ImportError:
-    import signal as _signal
+    _signal = signal
 _refs = sys.getrefcount
 VERSION_MAJOR = 0
 VERSION_MINOR = 1
@@ -212,6 +214,10 @@ class FieldError(Error, AttributeError):
     result = Result.ERROR_ARGUMENT
 
 
+class LoadError(Error, ImportError):
+    """The library cannot be compiled or loaded."""
+
+
 class NoSuchError(ArgumentError, IndexError):
     """There is no body of this number."""
 # ---- the shared library ------------------------------------------------------------------------
@@ -281,7 +287,7 @@ def _compiler(folder):
     """The command that compiles a shared library: the compiler and those flags that it accepts."""
     command = os.environ.get("CC", "cc").split() + os.environ.get("DEM_CFLAGS", "-O2").split()
     if not shutil.which(command[0]):
-        raise ImportError("dem.py: the C compiler %r was not found, so dem.h cannot be compiled; install one (Debian "
+        raise LoadError("dem.py: the C compiler %r was not found, so dem.h cannot be compiled; install one (Debian "
                           "package gcc), or set CC, or pass a library to dem.load" % command[0])
     if Real is ctypes.c_float:
         command.append("-DDEM_REAL=float")
@@ -305,7 +311,7 @@ def _header(header=None):
             os.path.realpath(__file__))) for up in ((), ("..", ".."))] + ["/usr/local/include/dem.h"]
     found = next((os.path.abspath(place) for place in places if os.path.isfile(place)), None)
     if not found:
-        raise ImportError("dem.py: dem.h was not found (%s); copy it beside dem.py, or set DEM_H" % ", ".join(places))
+        raise LoadError("dem.py: dem.h was not found (%s); copy it beside dem.py, or set DEM_H" % ", ".join(places))
     return found
 
 
@@ -328,6 +334,8 @@ def build(header=None, folder=None):
     above, or in /usr/local/include. folder: where the library is kept. Without it: DEM_BUILD, or the folder build
     beside dem.h, or ~/.cache/dem if that cannot be written. The environment variables CC (cc) and DEM_CFLAGS (-O2)
     give the compiler and its flags; DEM_REAL=float compiles in single precision."""
+    header, folder = (value if value is None else os.fsdecode(_text_of(value, "dem.build: " + name))
+                      for name, value in (("header", header), ("folder", folder)))
     header = _header(header)
     folder = _folder(header, folder)
     source = _SOURCE + _INLINE + _ROWS + "const size_t dempy_sizes[] = {%s, 0};\n" % ", ".join(
@@ -349,7 +357,7 @@ def build(header=None, folder=None):
         print("dem.py: compiling %s, once; this takes 10 to 30 s" % header, file=sys.stderr)
         result = subprocess.run(command, capture_output=True, text=True)
         if result.returncode:
-            raise ImportError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
+            raise LoadError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
         os.replace(os.path.join(work, "dem.so"), path)      # complete or absent, also if several processes compile
     return path
 
@@ -374,26 +382,29 @@ _lib = _Library()
 def load(path=None):
     """Loads the library at `path`, or without a path the one that dem.build() returns. Other functions call it
     automatically. A library of another version, precision or layout of structs raises ImportError."""
-    path = os.fspath(path or build())
-    library = ctypes.CDLL(path)
+    path = os.fsdecode(_text_of(path, "dem.load: path")) if path is not None else build()
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        raise LoadError("dem.load: %s" % error) from None
     for function, result, arguments, name, names in _FUNCTIONS:
         try:
             entry = getattr(library, function)
         except AttributeError:          # inline functions are in libraries that dem.build() has made
             if function.startswith("dempy_"):
                 continue
-            raise ImportError("dem.py: %s has no function %s; it is not a library of this dem.h" % (path, function)) from None
+            raise LoadError("dem.py: %s has no function %s; it is not a library of this dem.h" % (path, function)) from None
         entry.restype, entry.argtypes = result, arguments
         _lib.__dict__[function] = _checked(entry, name, names, arguments)
     if hasattr(library, "dempy_sizes"):
         sizes = (ctypes.c_size_t*(len(structs) + 1)).in_dll(library, "dempy_sizes")
         for size, kind in zip(sizes, structs):
             if size != ctypes.sizeof(kind):
-                raise ImportError("dem.py: %s has %d bytes in dem.h and %d in dem.py; make dem.py again: python3 make.py"
+                raise LoadError("dem.py: %s has %d bytes in dem.h and %d in dem.py; make dem.py again: python3 make.py"
                                   % (kind.c_name, size, ctypes.sizeof(kind)))
     world = library.dem_world_create_checked(WorldDesc(), VERSION, ctypes.sizeof(Real))
     if not world:
-        raise ImportError("dem.py: %s is of another version than %d.%d.%d, or not in %s precision; build it from the "
+        raise LoadError("dem.py: %s is of another version than %d.%d.%d, or not in %s precision; build it from the "
                           "dem.h that belongs to dem.py" % (path, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH,
                                                             "single" if Real is ctypes.c_float else "double"))
     library.dem_world_destroy(world)
@@ -513,7 +524,7 @@ def _pointer(value):
         return ctypes.cast(value, ctypes.c_void_p).value
     if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**(8*ctypes.sizeof(ctypes.c_void_p)):
         return value
-    raise TypeError("%s, a pointer of ctypes is wanted" % _given(value))
+    raise TypeError("%s, a pointer or None is wanted" % _given(value))
 
 
 def _chars(value, null=True):
@@ -557,9 +568,18 @@ def _struct_of(kind, value, where):
     if value is None:
         raise ArgumentTypeError("%s: None is given, a %s is wanted" % (where, kind.__name__))
     try:
-        return kind.make(value)
+        return kind._made(value)
     except (TypeError, ValueError, OverflowError) as error:
         raise _named(error, where) from None
+
+
+def _parts_of(value, world, where):
+    """Wall parts with their functions bound."""
+    try:
+        parts = [WallPart._made(item) for item in _items(value, "a list of WallPart")]
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
+    return [world._bound(part) for part in parts]
 
 
 def _handle_of(value, kind, where):
@@ -596,7 +616,7 @@ def _converter(kind, null):
         def convert(value):
             if value is None and not null and kind.__name__ not in ("Quat", "Box"):
                 raise TypeError("None is given, a %s is wanted" % kind.__name__)
-            return kind.make(value)
+            return kind._made(value)
         return convert
     return None
 
@@ -667,7 +687,7 @@ def _items(value, wanted):
     """The elements of a sequence."""
     if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
         raise TypeError("%s, %s is wanted" % (_given(value), wanted))
-    if hasattr(value, "__array__") and not hasattr(value, "tolist"):
+    if hasattr(value, "__array__") and not hasattr(value, "tolist") and not isinstance(value, type):
         value = value.__array__()                           # a table of pandas
     if hasattr(value, "tolist"):
         value = value.tolist()
@@ -684,7 +704,7 @@ def _convert(value, kind, exact=True):
     if isinstance(kind, Text) or kind is str:
         return _chars(value)
     if isinstance(kind, type) and issubclass(kind, Struct):
-        return kind.make(value)
+        return kind._made(value)
     if isinstance(kind, Choices):
         if isinstance(value, str):
             raise TypeError("%s, %d words are wanted, one for each axis" % (_given(value), kind.size))
@@ -699,7 +719,7 @@ def _convert(value, kind, exact=True):
             return kind()
         if isinstance(value, Struct) and not (issubclass(kind._type_, Struct) and isinstance(value, kind._type_)):
             value = tuple(value)
-        if exact or hasattr(value, "__len__") and not isinstance(value, Struct):
+        if exact or _many(value):
             items = _items(value, "a sequence of %d numbers" % kind._length_)
         else:
             items = [value]                                 # one class
@@ -710,15 +730,28 @@ def _convert(value, kind, exact=True):
         return _pointer(value)
     if isinstance(kind, type) and issubclass(kind, enum.IntEnum):
         return _number(value, kind)
+    if isinstance(kind, type) and issubclass(kind, ctypes._Pointer):
+        if value is None:
+            return kind()
+        if not isinstance(value, kind) and not (isinstance(value, ctypes.Array) and value._type_ is kind._type_):
+            raise TypeError("%s, a pointer or None is wanted" % _given(value))
+        return ctypes.cast(value, kind)
     return value
+
+
+def _many(value):
+    """True of what has several elements."""
+    return hasattr(value, "__len__") and not isinstance(value, (Struct, type))
 
 
 def _item(value, kind):
     """An element of an array: a struct, a pointer to one, or a number."""
     if issubclass(kind, Struct):
-        return kind.make(value)
+        return kind._made(value)
     if issubclass(kind, ctypes._Pointer):
-        return kind() if value is None else ctypes.pointer(kind._type_.make(value))
+        if value is not None and issubclass(kind._type_, Struct):
+            return ctypes.pointer(kind._type_._made(value))
+        return _convert(value, kind)
     return _number(value, kind)
 
 
@@ -734,7 +767,7 @@ def _array(value, kind, width=1, count=None, null=False):
     if isinstance(value, ctypes.Array) and value._type_ is kind:
         array = value
     elif issubclass(kind, Struct):
-        array = [kind.make(item) for item in _items(value, "a list of %s" % kind.__name__)]
+        array = [kind._made(item) for item in _items(value, "a list of %s" % kind.__name__)]
         array = (kind*len(array))(*array)
     else:
         array = _reals(value, kind, width, wanted)
@@ -754,7 +787,7 @@ def _reals(value, kind, width, wanted):
         view = memoryview(value)
     except (TypeError, ValueError):
         view = None
-        if hasattr(value, "__array__"):                     # a table of pandas
+        if hasattr(value, "__array__") and not isinstance(value, type):     # a table of pandas
             value = value.__array__()
     shape = view.shape if view else getattr(value, "shape", None)
     if isinstance(shape, tuple):
@@ -914,7 +947,7 @@ class Struct(ctypes.Structure):
                         pointers = True
                         _set(self, "_" + name, value)
                     elif value is not None and kind.one:
-                        _set(self, "_" + name, ctypes.pointer(kind.kind.make(value)))
+                        _set(self, "_" + name, ctypes.pointer(kind.kind._made(value)))
                     elif value is not None:
                         array = [value] if isinstance(value, kind.kind) else value
                         array = _array(array, kind.kind, kind.width)
@@ -924,7 +957,7 @@ class Struct(ctypes.Structure):
                         _set(self, "_" + name, None)
                 elif name in self.counted:
                     array = _convert(value, kind, False)
-                    size = 0 if value is None else len(value) if hasattr(value, "__len__") and not isinstance(value, Struct) else 1
+                    size = 0 if value is None else len(value) if _many(value) else 1
                     if size:
                         sizes[name] = size
                     _set(self, name, array)
@@ -1018,6 +1051,10 @@ class Struct(ctypes.Structure):
     @classmethod
     def make(cls, value):
         """This struct from an instance, a sequence, a dict, or None (zeros)."""
+        return _struct_of(cls, value, cls.__name__ + ".make") if value is not None else cls()
+
+    @classmethod
+    def _made(cls, value):
         if isinstance(value, cls):
             return value
         if value is None:
@@ -1046,7 +1083,7 @@ class Struct(ctypes.Structure):
 
     @classmethod
     def from_param(cls, value):
-        return cls.make(value)
+        return cls._made(value)
 
     def __iter__(self):
         return (getattr(self, name) for name in self.kinds)
@@ -1059,22 +1096,29 @@ class Struct(ctypes.Structure):
             if index not in self.kinds:
                 raise ArgumentError("%s has no field %r; it has %s" % (type(self).__name__, index, ", ".join(self.kinds)))
             return getattr(self, index)
-        return tuple(self)[index]
+        try:
+            return tuple(self)[index]
+        except TypeError:
+            raise ArgumentTypeError("%s[...]: %s, the number or the name of a field is wanted" % (
+                type(self).__name__, _given(index))) from None
+        except IndexError:
+            raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
 
     def keys(self):
         """The names of the fields: dict(struct) and pandas use them."""
         return list(self.kinds)
 
     def to_dict(self):
-        """The fields as a dict of Python's own kinds: numbers, texts, tuples and lists."""
-        return {name: _plain(getattr(self, name)) for name in self.kinds}
+        """The fields as a dict of Python's own kinds: numbers, texts, tuples and lists. Bare pointers are left out."""
+        return {name: _plain(getattr(self, name)) for name, kind in self.kinds.items() if not _raw(kind)}
 
     def __eq__(self, other):
         if isinstance(other, Struct) and type(other) is not type(self) and not (self.numbers and other.numbers):
             return False
         if not isinstance(other, (Struct, tuple, list)):
             return NotImplemented
-        mine, others = list(self), list(other)
+        mine, others = ([item for item, kind in zip(struct, self.kinds.values()) if not _raw(kind)] if isinstance(struct, Struct)
+                        else list(struct) for struct in (self, other))
         return len(mine) == len(others) and all(_same(a, b) for a, b in zip(mine, others))
 
     __hash__ = None
@@ -1116,14 +1160,17 @@ class Struct(ctypes.Structure):
 Struct.whole = False            # a sequence must have all fields
 
 
+def _raw(kind):
+    """True of a pointer whose length nobody knows."""
+    return isinstance(kind, type) and issubclass(kind, ctypes._Pointer) or kind is ctypes.c_void_p
+
+
 def _same(a, b):
     """Equality of two fields."""
     if isinstance(a, ctypes.Array):
         a = list(a)
     if isinstance(b, ctypes.Array):
         b = list(b)
-    if isinstance(a, ctypes._Pointer) and isinstance(b, ctypes._Pointer):
-        return ctypes.cast(a, ctypes.c_void_p).value == ctypes.cast(b, ctypes.c_void_p).value
     if isinstance(a, list) and isinstance(b, (list, tuple)):
         return len(a) == len(b) and all(map(_same, a, b))
     try:
@@ -1194,7 +1241,7 @@ class Numbers(Struct):
 
     def dot(self, other):
         """The scalar product with three (Quat: four) numbers."""
-        return sum(a*b for a, b in zip(self, type(self).make(other)))
+        return sum(a*b for a, b in zip(self, type(self)._made(other)))
 
 
 class Vector(Numbers):
@@ -1202,7 +1249,7 @@ class Vector(Numbers):
 
     def cross(self, other):
         """The vector product."""
-        (a, b, c), (x, y, z) = self, type(self).make(other)
+        (a, b, c), (x, y, z) = self, type(self)._made(other)
         return type(self)(b*z - c*y, c*x - a*z, a*y - b*x)
 
 
@@ -1274,6 +1321,8 @@ def _struct(cls):
     fields, docs = [], []
     cls._functions_ = {}
     for name, kind, doc in cls.rows:
+        if isinstance(kind, View) and not kind.shape and not kind.one:
+            kind.shape = tuple(length for length, arrays in cls.counts.items() if name in [array for array, _ in arrays])
         special = isinstance(kind, (View, Text, Function, Choices)) or kind is str or issubclass(kind, enum.IntEnum)
         c = ctypes.c_char_p if kind is str else _c(kind)
         fields.append(("_" + name if special else name, c))
@@ -1297,7 +1346,7 @@ class Id(Struct):
     """The id of an object of a world. Two ids are equal if they name the same object."""
 
     @classmethod
-    def make(cls, value):
+    def _made(cls, value):
         """An id from an id; None is the id 0, which names nothing."""
         if type(value) is cls:
             return value
@@ -1472,6 +1521,9 @@ class Handle:
             context.runs = outer
             if not outer:
                 _RUNNING.discard(context)
+            if context.stop:                                # Ctrl-C, and another thread is the main thread
+                context.stop = False
+                context.fail(KeyboardInterrupt())
 
     def _id(self, value):
         self._ok(0)
@@ -1785,11 +1837,31 @@ class SlabsBase(Handle):
 
 
 def progress_print(world, done, seconds_left):
-    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print)."""
-    world._print(_lib.dem_progress_print, sys.stderr, world._c, done, seconds_left)
+    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print). In a
+    notebook it rewrites one line."""
+    if not isinstance(world, WorldBase):
+        raise ArgumentTypeError("dem.progress_print: world: %s, a World is wanted" % _given(world))
+    if "ipykernel" not in sys.modules:
+        world._print(_lib.dem_progress_print, sys.stderr, world._c, done, seconds_left)
+        return
+    text = io.StringIO()
+    world._print(_lib.dem_progress_print, text, world._c, done, seconds_left)
+    if text.getvalue().strip():                             # it prints a line for every tenth
+        print("\r" + " ".join(text.getvalue().split("\n")).strip().ljust(100), end="\n" if done >= 1 else "", file=sys.stderr, flush=True)
 
 
 _RUNNING = set()                # contexts of the worlds that run
+
+
+def _interrupted(number, frame):
+    """The handler of Ctrl-C: ends the runs of all threads, then does what Python does."""
+    for context in list(_RUNNING):
+        context.stop = True
+    signal.default_int_handler(number, frame)
+
+
+if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, _interrupted)
 
 
 def _go_on(world, done, seconds_left):
@@ -2040,12 +2112,17 @@ class Page:
     """A replay file, which Jupyter shows inside a notebook: dem.Page("drum.html")."""
 
     def __init__(self, path, height=560):
+        path = os.fsdecode(_text_of(path, "dem.Page: path"))
         self.path, self.height = path, height
 
     def _repr_html_(self):
-        with open(self.path, encoding="utf-8") as file:
-            return '<iframe srcdoc="%s" width="100%%" height="%d" style="border:0"></iframe>' % (
-                html.escape(file.read()), self.height)
+        try:
+            with open(self.path, encoding="utf-8") as file:
+                text = file.read()
+        except OSError as error:
+            raise FileError("dem.Page: cannot read %s: %s" % (self.path, error.strerror)) from None
+        return '<iframe srcdoc="%s" width="100%%" height="%d" style="border:0"></iframe>' % (
+                html.escape(text), self.height)
 
 # ---- enums ---------------------------------------------------------------------------------------
 
@@ -4697,7 +4774,7 @@ class Output(Id):
 
 
 def _wrap_dem_output_desc_values(function, context, struct):
-    values_type = ctypes.c_double*(len(struct.columns.split()))
+    values_type = ctypes.c_double*(len((struct.columns or '').split()))
 
     def call(world, values, user):
         try:
@@ -5626,7 +5703,7 @@ class World(WorldBase):
         is complete: the next call completes it as its first step, here or in a world that has read a checkpoint
         written meanwhile. The bits are those of a run without the interruption.
         """
-        self._ok(self._run(_lib.dem_world_step, self._c, steps) if self._context.kept else
+        self._ok(self._run(_lib.dem_world_step, self._c, steps) if self._context.kept or self._context.runs else
             _lib.dem_world_step(self._c, steps))
 
     def run(self, seconds, progress=None):
@@ -5634,14 +5711,14 @@ class World(WorldBase):
         twenty of 0.05 s end within half a step of 1 s, because each counts from where the previous one should have
         ended (unless other steps were taken in between). progress: or null. Errors as for dem_world_step.
         """
-        progress = self._callback(ProgressFn, progress or _go_on)
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
         self._ok(self._run(_lib.dem_world_run, self._c, seconds, progress, None))
 
     def run_to(self, time, progress=None):
         """Advances the world to a time of its clock, s, not before the present one. Otherwise as dem_world_run. A
         program that has read a checkpoint can thus run to the same end.
         """
-        progress = self._callback(ProgressFn, progress or _go_on)
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
         self._ok(self._run(_lib.dem_world_run_to, self._c, time, progress, None))
 
     def settle(self, seconds, speed=0, progress=None):
@@ -5654,7 +5731,7 @@ class World(WorldBase):
         DEM_ERROR_ARGUMENT for a feed with neither `limited` nor `end`, and DEM_ERROR_STOPPED if the time is up: the
         message gives the speeds, or the feed that is not done, and the state is intact.
         """
-        progress = self._callback(ProgressFn, progress or _go_on)
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
         self._ok(self._run(_lib.dem_world_settle, self._c, seconds, speed, progress, None))
 
     def gravity_set(self, gravity):
@@ -6047,8 +6124,7 @@ class World(WorldBase):
         material and motion. scale: m per unit of length of the file, > 0; 0: 1. walls: receives `count` ids; or null.
         If one part fails, no wall is added.
         """
-        parts = _array_of([self._bound(WallPart.make(item)) for item in _items(parts, 'a list of WallPart')],
-            WallPart, 'World.wall_parts: parts', 1)
+        parts = _array_of(_parts_of(parts, self, 'World.wall_parts: parts'), WallPart, 'World.wall_parts: parts', 1)
         count = len(parts)
         walls = (Wall*max(count, 1))()
         self._ok(_lib.dem_wall_parts_add(self._c, _text_of(path, 'World.wall_parts: path'), scale, count, parts,
@@ -6341,7 +6417,7 @@ class Slabs(SlabsBase):
         """Advances all slabs by `steps` time steps (>= 0). Errors as for dem_world_step; DEM_ERROR_STOPPED also if the
         transport has failed.
         """
-        self._ok(self._run(_lib.dem_slabs_step, self._c, steps) if self._context.kept else
+        self._ok(self._run(_lib.dem_slabs_step, self._c, steps) if self._context.kept or self._context.runs else
             _lib.dem_slabs_step(self._c, steps))
 
     def collect(self, world):

@@ -342,7 +342,7 @@ class Writer:
         self.write("\n\ndef _wrap_%s(function, context, struct):" % f.name)
         for a in pointers:
             size = {"memory": "context.memory", "rates": "2" if "rate_fn" in f.name else "context.reals", "reals": "context.reals",
-                    "values": "len(struct.columns.split())"}.get(a.name) or fail(
+                    "values": "len((struct.columns or '').split())"}.get(a.name) or fail(
                         "no rule for the length of %s of %s" % (a.name, f.name))
             self.write("    %s_type = " % a.name + ("_history(context.memory, context.vectors)" if a.name == "memory" else "%s*%s" % (
                 NUMBERS[a.type], "(%s)" % size if "(" in size else size)))
@@ -517,7 +517,7 @@ class Writer:
                 params.append((a.name, "None" if all(x.name == "user" for x in args[i + 1:]) else None))
                 value = a.name
                 if kind == "dem_progress_fn":
-                    value = "%s or _go_on" % a.name
+                    value = "_go_on if %s is None else %s" % (a.name, a.name)
                 pre.append("%s = %s._callback(%s, %s)" % (a.name, world, camel(kind), value))
                 pass_on.append(a.name)
             elif a.name == "count" and counted:
@@ -533,8 +533,7 @@ class Writer:
                 params.append((a.name, "None" if null else None))
                 optional = optional or bool(null)
                 item = camel(kind) if kind in h.structs else self.plain(kind)
-                source = "[%s._bound(%s.make(item)) for item in _items(%s, 'a list of WallPart')]" % (
-                    world, item, a.name) if kind == "dem_wall_part" else a.name
+                source = "_parts_of(%s, %s, %s)" % (a.name, world, at(a)) if kind == "dem_wall_part" else a.name
                 if not counted:             # numbers of bodies and walls
                     rows = "%s.bodies.count" % world
                     pre.append("%s = _array_of(%s, %s, %s, %s)" % (
@@ -704,7 +703,8 @@ class Writer:
             head, inner = call.split("(", 1)
             run = "%s._ok(%s._run(%s, %s)" % (world, world, head, inner)
             if f.name.endswith("_step"):            # without functions of yours there is nothing to interrupt
-                return ["%s._ok(%s._run(%s, %s if %s._context.kept else %s)" % (world, world, head, inner, world, call)]
+                return ["%s._ok(%s._run(%s, %s if %s._context.kept or %s._context.runs else %s)" % (
+                    world, world, head, inner, world, world, call)]
             return [run] + (["return " + ", ".join(name for name, _ in outs)] if outs else [])
         if f.type == "dem_result":
             lines = ["%s._ok(%s)" % (world, call)]
@@ -903,6 +903,10 @@ class FieldError(Error, AttributeError):
     result = Result.ERROR_ARGUMENT
 
 
+class LoadError(Error, ImportError):
+    """The library cannot be compiled or loaded."""
+
+
 class NoSuchError(ArgumentError, IndexError):
     """There is no body of this number."""
 '''
@@ -942,11 +946,13 @@ import functools
 import gc
 import hashlib
 import html
+import io
 import math
 import operator
 import os
 import platform
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -957,7 +963,7 @@ import weakref
 try:
     import _signal              # signal.signal takes 15 us
 except ImportError:
-    import signal as _signal
+    _signal = signal
 _refs = sys.getrefcount
 '''
 

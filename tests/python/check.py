@@ -27,7 +27,7 @@ ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 PYTHON = os.path.join(ROOT, "examples", "python")
 os.environ.setdefault("DEM_BUILD", os.path.join(ROOT, "build"))
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
-sys.path.insert(0, PYTHON)
+sys.path[:0] = [PYTHON, os.path.dirname(os.path.abspath(__file__))]
 sys.dont_write_bytecode = True
 import dem  # noqa: E402
 
@@ -789,6 +789,58 @@ def _():
     world.run(0.01)
 
 
+@test("Ctrl-C ends the runs of all threads within a second")
+def _():
+    code = ("import sys, os, signal, threading, time, concurrent.futures; sys.path.insert(0, %r); import dem\n"
+            "def job(k):\n"
+            "    world = dem.World(gravity=(0, 0, -9.81), threads=1)\n"
+            "    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5)\n"
+            "    world.wall_plane(glass, (0, 0, 0), (0, 0, 1))\n"
+            "    world.spheres_fill(glass, 2e-3, (-.02, -.02, 0, .02, .02, .2), 300, 1)\n"
+            "    world.run(100)\n"
+            "dem.load()\n"
+            "began = []\n"
+            "def interrupt():\n"
+            "    began.append(time.time())\n"
+            "    os.kill(os.getpid(), signal.SIGINT)\n"
+            "threading.Timer(0.5, interrupt).start()\n"
+            "try:\n"
+            "    with concurrent.futures.ThreadPoolExecutor(2) as pool:\n"
+            "        list(pool.map(job, range(4)))\n"
+            "except KeyboardInterrupt:\n"
+            "    print(time.time() - began[0])\n" % PYTHON)
+    done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, timeout=120)
+    same(done.stderr, "")
+    same(float(done.stdout) < 2, True, "s until all had ended: " + done.stdout)
+
+
+@test("one world in two threads is refused by name")
+def _():
+    world, glass = heap(threads=1)
+    world.spheres_fill(glass, 0.01, (-0.3, -0.3, 0, 0.3, 0.3, 0.4), 300, 1)
+    stop = threading.Event()
+    thread = threading.Thread(target=lambda: swallow(lambda: world.run(1e4, lambda *_: stop.is_set())))
+    thread.start()
+    try:
+        began = time.time()
+        while not world._context.runs and time.time() - began < 5:
+            time.sleep(0.01)
+        raises(dem.Error, lambda: world.run(1), "World.run: another thread runs this world")
+        raises(dem.Error, lambda: world.step(1), "another thread")
+        raises(dem.Error, world.close, "another thread")
+    finally:
+        stop.set()
+        thread.join()
+    world.run(1e-4)
+
+
+def swallow(function):
+    try:
+        function()
+    except dem.StoppedError:
+        pass
+
+
 @test("functions of outputs and replays see the world, and a CSV file gets what they return")
 def _():
     world, glass = heap()
@@ -1074,6 +1126,103 @@ def _():
         getattr(dem, "law_" + law)(given, memory, force)
     dem.law_load(given, force, 0)
     same(force.normal > 0 and dem.memory_rotate(given, (1, 0, 0)).x == 1, True)
+
+
+# ---- all calls ----
+
+@test("no call with wrong values in any argument ends the process, and each exception is a dem.Error")
+def _():
+    import walk
+    total, refused, accepted, wrong = walk.main(int(os.environ.get("JOBS") or os.cpu_count() or 1))
+    print("# %d calls: %d refused, %d accepted" % (total, refused, accepted))
+    same((wrong[:5], refused + accepted, total > 50000), ([], total, True))
+
+
+@test("messages of wrong calls name the call, the argument, what is given and what is wanted")
+def _():
+    world, glass = heap()
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    for call, text in ((lambda: world.sphere(glass, (0, 0, 1), 0.01), "World.sphere: radius: (0, 0, 1) (tuple) is given, a number is wanted"),
+                       (lambda: world.run("1"), "World.run: seconds: '1' (str) is given, a number is wanted"),
+                       (lambda: world.step(2**40), "World.step: steps: 1099511627776 is given, must be from -2147483648 to 2147483647"),
+                       (lambda: world.vtp_write(5), "World.vtp_write: path: 5 (int) is given, a text is wanted"),
+                       (lambda: world.vtp_write("a\0b"), "World.vtp_write: path: b'a\\x00b' (bytes) is given, a text without the character 0 is wanted"),
+                       (lambda: ball.set(velocity=3), "BodyState.velocity: 3 (int) is given, a Vec3, or 3 numbers (x, y, z) is wanted"),
+                       (lambda: world.run(1, progress=True), "World.run: True (bool) is given, a function is wanted"),
+                       (lambda: world.output_every("vtu", "a.vtu", 1), "World.output_every: kind: OutputKind has no 'vtu'; it has "),
+                       (lambda: world.report(5), "report: out: 5 (int) is given, a file of Python is wanted"),
+                       (lambda: world.slabs(axis="x"), "SlabsDesc.axis: 'x' (str) is given, a whole number is wanted"),
+                       (lambda: dem.World(body_reals=5), "WorldDesc.body_reals: 5 (int) is given, a text is wanted"),
+                       (lambda: copy.copy(world), "a World owns memory of dem.h and cannot be copied or pickled")):
+        error = raises(dem.Error, call)
+        same(str(error)[:len(text)], text)
+        same(isinstance(error, (ValueError, TypeError, OverflowError)), True)
+
+
+@test("structs are pickled, copied and compared; a process pool returns them; worlds refuse by name")
+def _():
+    import pickle
+    world, glass = heap(ledger=1, groups="a")
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    world.run(0.01)
+    mesh = dem.Mesh(vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], triangles=[(0, 1, 2)])
+    grains = world.grains_parse("g.csv", "x y z r\n1 2 3 0.1\n4 5 6 0.2\n")
+    for struct in (dem.Vec3(1, 2, 3), world.totals, world.ledger, ball.state, world.counters, world.desc, glass.desc, mesh, grains, ball, glass,
+                   dem.Region(box=(0, 0, 0, 1, 1, 1), cylinder="z"), dem.Selection(bodies=[ball], region=dem.Region(box=(0, 0, 0, 1, 1, 1))),
+                   dem.Sizes(kind="sieve_curve", radius=[1, 2], passing=[0, 1]), world.body_counts, dem.Motion(kind="rotating"),
+                   dem.Motion(kind="table", table=[dem.MotionRow(0, (0, 0, 0)), dem.MotionRow(1, (0, 0, 1))]), dem.WorldDesc(groups="a b")):
+        for made in (pickle.loads(pickle.dumps(struct)), copy.copy(struct), copy.deepcopy(struct)):
+            same(type(made), type(struct))
+            same(made.to_dict() if not isinstance(made, dem.Id) else made, struct.to_dict() if not isinstance(struct, dem.Id) else struct,
+                 type(struct).__name__)
+    same(pickle.loads(pickle.dumps(mesh)).vertices.tolist(), [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    same((world.totals == world.totals, world.totals == dem.Totals(), dem.Vec3(1, 2, 3) == (1, 2, 3), dem.Vec3(1, 2, 3) != [1, 2, 4],
+          dem.Motion(kind="rotating") == dem.Motion(kind="rotating"), dem.Vec3() == "abc"), (True, False, True, True, True, False))
+    for thing in (world, world.slabs(axis=0, count=1), world.replay(os.path.join(WORK.name, "p.html"))):
+        for function in (pickle.dumps, copy.copy, copy.deepcopy):
+            raises(TypeError, lambda: function(thing), type(thing).__name__, "copied or pickled", "checkpoint")
+    code = ("import sys, multiprocessing, concurrent.futures; sys.path.insert(0, %r); import dem\n"
+            "def job(height):\n"
+            "    with dem.World(gravity=(0, 0, -9.81), threads=1) as world:\n"
+            "        ball = world.sphere(world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5), 0.01, (0, 0, height))\n"
+            "        world.run(0.01)\n"
+            "        return ball.state, world.totals\n"
+            "if __name__ == '__main__':\n"
+            "    with concurrent.futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context('spawn')) as pool:\n"
+            "        (one, total), (two, _) = pool.map(job, (1, 2))\n"
+            "    print(round((two.position - one.position).z, 9), total.mass == one.mass)\n" % PYTHON)
+    path = os.path.join(WORK.name, "pool.py")
+    with open(path, "w") as file:
+        file.write(code)
+    done = subprocess.run([sys.executable, "-B", path], capture_output=True, text=True)
+    same(done.stdout.split(), ["1.0", "True"], done.stderr[-500:])
+
+
+@test("Vec3 and Quat are numbers: sums, products, lengths, comparison with tuples")
+def _():
+    v, w = dem.Vec3(3, 4, 0), dem.Vec3(1, 2, 3)
+    same((v + w, v - w, 2*v, v*w, v/2, -v, abs(v), v.dot(w), v.cross(w)),
+         ((4, 6, 3), (2, 2, -3), (6, 8, 0), (3, 8, 0), (1.5, 2, 0), (-3, -4, 0), 5.0, 11.0, (12, -9, 2)))
+    same((v + (1, 1, 1), (1, 1, 1) - v, sum([v, w], dem.Vec3()), list(v), v[0], v[-1], v["y"], tuple(v[:2])),
+         ((4, 5, 1), (-2, -3, 1), (4, 6, 3), [3, 4, 0], 3.0, 0.0, 4.0, (3.0, 4.0)))
+    v += w
+    same((v, type(v), dem.Quat(1, 0, 0, 0)*2), ((4, 6, 3), dem.Vec3, (2, 0, 0, 0)))
+    raises(TypeError, lambda: v + (1, 2))
+    raises(TypeError, lambda: v + "abc")
+
+
+@test("worlds, ids and arrays show what they are")
+def _():
+    world, glass = heap()
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    world.step(2)
+    same((repr(world), repr(glass), repr(ball)), ("<World at %.6g s: 1 bodies, step 2>" % world.time, "Material(id=1)", "Body(slot=1, generation=1)"))
+    same("1 bodies" in repr(world.bodies) and repr(world.contacts) == "<0 ContactInfo>", True)
+    columns = world.contacts.to_dict()
+    same((columns["overlap"], "point_x" in columns), ([], True))
+    same(set(world.totals.to_dict()), set(dem.Totals.kinds))
+    world.close()
+    same((repr(world), bool(world)), ("<World, closed>", True))
 
 
 # ---- the notebook ----
