@@ -9,11 +9,63 @@ _SOURCE = """
 """
 
 
+# The arrays of all bodies in the order of their slots, and what sets or reads them together.
+_ROWS = r"""
+#include <stdlib.h>
+#include <string.h>
+static uint32_t *dempy_ranks(const dem_bodies *b) {
+    uint32_t most = 0, sum = 0, k, *rank;
+    int i;
+    for (i = 0; i < b->count; i++) if (b->slots[i] > most) most = b->slots[i];
+    rank = (uint32_t *)calloc((size_t)most + 1, sizeof *rank);
+    if (!rank) return 0;
+    for (i = 0; i < b->count; i++) rank[b->slots[i]] = 1;
+    for (k = 0; k <= most; k++) { const uint32_t here = rank[k]; rank[k] = sum; sum += here; }
+    return rank;
+}
+int dempy_rows(const dem_world *w, size_t field, size_t width, int count, char *out) {
+    const dem_bodies b = dem_bodies_get(w);
+    const char *from;
+    uint32_t *rank;
+    int i;
+    memcpy(&from, (const char *)&b + field, sizeof from);
+    if (!from || count != b.count) return 1;
+    if (!(rank = dempy_ranks(&b))) return 2;
+    for (i = 0; i < b.count; i++) memcpy(out + width*rank[b.slots[i]], from + width*(size_t)i, width);
+    free(rank);
+    return 0;
+}
+int dempy_ids(const dem_world *w, int count, dem_body *out) {
+    const dem_bodies b = dem_bodies_get(w);
+    uint32_t *rank;
+    int i;
+    if (count != b.count) return 1;
+    if (!(rank = dempy_ranks(&b))) return 2;
+    for (i = 0; i < b.count; i++) out[rank[b.slots[i]]] = dem_body_id_get(w, i);
+    free(rank);
+    return 0;
+}
+int dempy_put(dem_world *w, int count, const dem_body *ids, const dem_real *x, const dem_real *v, const dem_real *s) {
+    int i;
+    for (i = 0; i < count; i++) {
+        dem_body_state state;
+        int result = dem_body_get(w, ids[i], &state);
+        if (x) state.position = dem_vec3_make(x[3*i], x[3*i + 1], x[3*i + 2]);
+        if (v) state.velocity = dem_vec3_make(v[3*i], v[3*i + 1], v[3*i + 2]);
+        if (s) state.spin = dem_vec3_make(s[3*i], s[3*i + 1], s[3*i + 2]);
+        if (!result) result = dem_body_set(w, ids[i], &state);
+        if (result) return result;
+    }
+    return 0;
+}
+"""
+
+
 def _compiler(folder):
     """The command that compiles a shared library: the compiler and those flags that it accepts."""
     command = os.environ.get("CC", "cc").split() + os.environ.get("DEM_CFLAGS", "-O2").split()
     if not shutil.which(command[0]):
-        raise ImportError("dem.py: the C compiler %r was not found, so dem.h cannot be compiled; install one (Debian "
+        raise LoadError("dem.py: the C compiler %r was not found, so dem.h cannot be compiled; install one (Debian "
                           "package gcc), or set CC, or pass a library to dem.load" % command[0])
     if Real is ctypes.c_float:
         command.append("-DDEM_REAL=float")
@@ -30,19 +82,19 @@ def _compiler(folder):
     return command
 
 
-def build(header=None, folder=None):
-    """Compiles dem.h to a shared library, unless that has been done before, and returns its path.
-
-    header: path of dem.h. Without it: the environment variable DEM_H, or dem.h in the folder of dem.py, two folders
-    above, or in /usr/local/include. folder: where the library is kept. Without it: DEM_BUILD, or the folder build
-    beside dem.h, or ~/.cache/dem if that cannot be written. The environment variables CC (cc) and DEM_CFLAGS (-O2)
-    give the compiler and its flags; DEM_REAL=float compiles in single precision."""
-    here = os.path.dirname(os.path.abspath(__file__))
+def _header(header=None):
+    """The path of dem.h."""
     places = [header or os.environ.get("DEM_H")] if header or "DEM_H" in os.environ else [
-        os.path.join(here, "dem.h"), os.path.join(here, "..", "..", "dem.h"), "/usr/local/include/dem.h"]
-    header = next((os.path.abspath(place) for place in places if os.path.isfile(place)), None)
-    if not header:
-        raise ImportError("dem.py: dem.h was not found (%s); copy it beside dem.py, or set DEM_H" % ", ".join(places))
+        os.path.join(here, *up, "dem.h") for here in (os.path.dirname(os.path.abspath(__file__)), os.path.dirname(
+            os.path.realpath(__file__))) for up in ((), ("..", ".."))] + ["/usr/local/include/dem.h"]
+    found = next((os.path.abspath(place) for place in places if os.path.isfile(place)), None)
+    if not found:
+        raise LoadError("dem.py: dem.h was not found (%s); copy it beside dem.py, or set DEM_H" % ", ".join(places))
+    return found
+
+
+def _folder(header, folder):
+    """The folder in which libraries are kept."""
     folder = folder or os.environ.get("DEM_BUILD") or os.path.join(os.path.dirname(header), "build")
     try:
         os.makedirs(folder, exist_ok=True)
@@ -50,7 +102,21 @@ def build(header=None, folder=None):
     except OSError:
         folder = os.path.join(os.path.expanduser("~"), ".cache", "dem")
         os.makedirs(folder, exist_ok=True)
-    source = _SOURCE + _INLINE + "const size_t dempy_sizes[] = {%s, 0};\n" % ", ".join(
+    return folder
+
+
+def build(header=None, folder=None):
+    """Compiles dem.h to a shared library, unless that has been done before, and returns its path.
+
+    header: path of dem.h. Without it: the environment variable DEM_H, or dem.h in the folder of dem.py, two folders
+    above, or in /usr/local/include. folder: where the library is kept. Without it: DEM_BUILD, or the folder build
+    beside dem.h, or ~/.cache/dem if that cannot be written. The environment variables CC (cc) and DEM_CFLAGS (-O2)
+    give the compiler and its flags; DEM_REAL=float compiles in single precision."""
+    header, folder = (value if value is None else os.fsdecode(_text_of(value, "dem.build: " + name))
+                      for name, value in (("header", header), ("folder", folder)))
+    header = _header(header)
+    folder = _folder(header, folder)
+    source = _SOURCE + _INLINE + _ROWS + "const size_t dempy_sizes[] = {%s, 0};\n" % ", ".join(
         "sizeof(%s)" % kind.c_name for kind in structs)
     with open(header, "rb") as file:
         text = file.read()
@@ -69,7 +135,7 @@ def build(header=None, folder=None):
         print("dem.py: compiling %s, once; this takes 10 to 30 s" % header, file=sys.stderr)
         result = subprocess.run(command, capture_output=True, text=True)
         if result.returncode:
-            raise ImportError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
+            raise LoadError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
         os.replace(os.path.join(work, "dem.so"), path)      # complete or absent, also if several processes compile
     return path
 
@@ -94,39 +160,44 @@ _lib = _Library()
 def load(path=None):
     """Loads the library at `path`, or without a path the one that dem.build() returns. Other functions call it
     automatically. A library of another version, precision or layout of structs raises ImportError."""
-    name = path or build()
-    library = ctypes.CDLL(name)
-    for function, result, arguments in _FUNCTIONS:
+    path = os.fsdecode(_text_of(path, "dem.load: path")) if path is not None else build()
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        raise LoadError("dem.load: %s" % error) from None
+    for function, result, arguments, name, names in _FUNCTIONS:
         try:
             entry = getattr(library, function)
         except AttributeError:          # inline functions are in libraries that dem.build() has made
             if function.startswith("dempy_"):
                 continue
-            raise ImportError("dem.py: %s has no function %s; it is not a library of this dem.h" % (name, function)) from None
+            raise LoadError("dem.py: %s has no function %s; it is not a library of this dem.h" % (path, function)) from None
         entry.restype, entry.argtypes = result, arguments
-        _lib.__dict__[function] = _checked(entry, function, arguments or [])
+        _lib.__dict__[function] = _checked(entry, name, names, arguments)
     if hasattr(library, "dempy_sizes"):
         sizes = (ctypes.c_size_t*(len(structs) + 1)).in_dll(library, "dempy_sizes")
         for size, kind in zip(sizes, structs):
             if size != ctypes.sizeof(kind):
-                raise ImportError("dem.py: %s has %d bytes in dem.h and %d in dem.py; make dem.py again: python3 make.py"
+                raise LoadError("dem.py: %s has %d bytes in dem.h and %d in dem.py; make dem.py again: python3 make.py"
                                   % (kind.c_name, size, ctypes.sizeof(kind)))
     world = library.dem_world_create_checked(WorldDesc(), VERSION, ctypes.sizeof(Real))
     if not world:
-        raise ImportError("dem.py: %s is of another version than %d.%d.%d, or not in %s precision; build it from the "
-                          "dem.h that belongs to dem.py" % (name, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH,
+        raise LoadError("dem.py: %s is of another version than %d.%d.%d, or not in %s precision; build it from the "
+                          "dem.h that belongs to dem.py" % (path, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH,
                                                             "single" if Real is ctypes.c_float else "double"))
     library.dem_world_destroy(world)
-    _lib.__dict__["path"] = name
+    _lib.__dict__["path"] = path
 
 
 # ---- values: Python objects to C and back -------------------------------------------------------
 
 class View:
-    """The kind of a pointer to `kind`, with the names of the fields that hold the lengths of its axes."""
+    """The kind of a pointer to `kind`, with the names of the fields that hold the lengths of its axes. one: it points to
+    one struct, not to an array."""
 
-    def __init__(self, kind, *shape, const=False):
-        self.kind, self.shape, self.const, self.c = kind, shape, const, ctypes.POINTER(kind)
+    def __init__(self, kind, *shape, const=False, one=False):
+        self.kind, self.shape, self.const, self.one, self.c = kind, shape, const, one, ctypes.POINTER(kind)
+        self.width = shape[1] if len(shape) > 1 and isinstance(shape[1], int) else 1
 
 
 class Text:
@@ -140,7 +211,7 @@ class Choices:
     """The kind of an array of numbers of an enum."""
 
     def __init__(self, kind, size):
-        self.kind, self.c = kind, ctypes.c_int*size
+        self.kind, self.size, self.c = kind, size, ctypes.c_int*size
 
 
 class Function:
@@ -156,11 +227,36 @@ _LIMITS = {kind: (-2**(8*ctypes.sizeof(kind) - 1) if signed else 0, 2**(8*ctypes
     ((ctypes.c_uint8, ctypes.c_uint16, ctypes.c_uint32, ctypes.c_uint64, ctypes.c_uint, ctypes.c_ulong, ctypes.c_size_t), 0))
     for kind in kinds}
 _NUMBERS = {ctypes.c_float, ctypes.c_double, *_LIMITS}
+_set = ctypes.Structure.__setattr__
+_WORDS = {"groups", "body_reals", "law_memory_names", "columns"}    # texts that are lists of names
+
+
+def _given(value):
+    """A value that is refused, as error messages show it."""
+    if value is None:
+        return "None is given"
+    kind, shape = type(value).__name__, getattr(value, "shape", None)
+    if isinstance(shape, tuple):
+        return "a %s of shape %s is given" % (kind, shape)
+    try:
+        text = repr(value)
+    except Exception:
+        text = "<%s>" % kind
+    return "%s (%s) is given" % (text if len(text) <= 60 else text[:57] + "...", kind)
+
+
+def _named(error, where):
+    """The exception of this library for a wrong value: `where` says which call and which argument or field."""
+    kind = (type(error) if isinstance(error, Error) else ArgumentTypeError if isinstance(error, TypeError) else
+            ArgumentRangeError if isinstance(error, OverflowError) else ArgumentError)
+    return kind("%s: %s" % (where, error))
 
 
 def _number(value, kind):
     """value as a number of an enum (which may be given by name) or of a C type. A text, a float in the place of a whole
     number and a bool in the place of a real raise TypeError; a number that does not fit raises OverflowError."""
+    if kind is ctypes.c_double and type(value) is float:
+        return value
     names = isinstance(kind, type) and issubclass(kind, enum.IntEnum)
     if names and isinstance(value, str):
         try:
@@ -174,38 +270,190 @@ def _number(value, kind):
         try:
             whole = operator.index(value)
         except TypeError:
-            raise TypeError("%r is given, a whole number is needed" % (value,)) from None
+            raise TypeError("%s, %s is wanted" % (_given(value), "a word or a number of %s" % kind.__name__ if names
+                                                  else "a whole number")) from None
         low, high = _LIMITS[ctypes.c_int if names else kind]
         if not low <= whole <= high:
             raise OverflowError("%d is given, must be from %d to %d" % (whole, low, high))
+        if names and whole not in kind._value2member_map_:
+            raise ValueError("%s has no %d; it has %s" % (kind.__name__, whole, ", ".join(
+                "%d (%s)" % (member, member.name.lower()) for member in kind)))
         return whole
     if kind in _NUMBERS:
-        if type(value) is float and kind is ctypes.c_double:
-            return value
         if isinstance(value, (str, bytes, bytearray, bool)) or not (hasattr(value, "__float__") or hasattr(value, "__index__")):
-            raise TypeError("%r is given, a number is needed" % (value,))
-        real = float(value)
+            raise TypeError("%s, a number is wanted" % _given(value))
+        try:
+            real = float(value)
+        except (TypeError, ValueError):             # an array of several numbers
+            raise TypeError("%s, a number is wanted" % _given(value)) from None
         if kind is ctypes.c_float and math.isinf(kind(real).value) and not math.isinf(real):
             raise OverflowError("%r does not fit into single precision" % (value,))
         return real
     return value
 
 
-def _checked(entry, name, kinds):
-    """The function `entry`, with its numbers checked: ctypes would take them modulo 2**32."""
-    places = [(i, kind, kind.make if isinstance(kind, type) and issubclass(kind, Struct) else None)
-              for i, kind in enumerate(kinds) if kind in _NUMBERS or isinstance(kind, type) and issubclass(kind, Struct)]
-    if not places:
+def _pointer(value):
+    """value as an untyped pointer."""
+    if value is None:
+        return None
+    if isinstance(value, (ctypes.Array, ctypes.Structure, ctypes._CFuncPtr)):
+        return ctypes.addressof(value)
+    if isinstance(value, (ctypes._Pointer, ctypes.c_void_p)):
+        return ctypes.cast(value, ctypes.c_void_p).value
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**(8*ctypes.sizeof(ctypes.c_void_p)):
+        return value
+    raise TypeError("%s, a pointer or None is wanted" % _given(value))
+
+
+def _chars(value, null=True):
+    """value as the bytes of a C text."""
+    if isinstance(value, (str, os.PathLike)):
+        value = os.fsencode(value)
+    if value is None and null:
+        return None
+    if not isinstance(value, bytes):
+        raise TypeError("%s, a text is wanted" % _given(value))
+    if b"\0" in value:
+        raise ValueError("%s, a text without the character 0 is wanted" % _given(value))
+    return value
+
+
+def _text_of(value, where):
+    """value as the bytes of a C text; None is refused."""
+    try:
+        return _chars(value, False)
+    except (TypeError, ValueError) as error:
+        raise _named(error, where) from None
+
+
+def _data_of(value, where):
+    """value as bytes: of a text, or of a buffer."""
+    try:
+        return value.encode() if isinstance(value, str) else bytes(memoryview(value))
+    except TypeError:
+        raise ArgumentTypeError("%s: %s, a text or bytes are wanted" % (where, _given(value))) from None
+
+
+def _enum_of(value, kind, where):
+    try:
+        return _number(value, kind)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
+
+
+def _struct_of(kind, value, where):
+    """value as a struct of this kind: None is refused."""
+    if value is None:
+        raise ArgumentTypeError("%s: None is given, a %s is wanted" % (where, kind.__name__))
+    try:
+        return kind._made(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
+
+
+def _parts_of(value, world, where):
+    """Wall parts with their functions bound."""
+    try:
+        parts = [WallPart._made(item) for item in _items(value, "a list of WallPart")]
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
+    return [world._bound(part) for part in parts]
+
+
+def _handle_of(value, kind, where):
+    """The pointer of a world that is an argument."""
+    if not isinstance(value, kind):
+        raise ArgumentTypeError("%s: %s, a %s is wanted" % (where, _given(value), kind.__name__))
+    return value._c
+
+
+def _size_of(count, where):
+    """The length of an array that a call fills."""
+    try:
+        count = _number(count, ctypes.c_int)
+    except (TypeError, OverflowError) as error:
+        raise _named(error, where) from None
+    if count > 2**28:
+        raise ArgumentRangeError("%s: %d is given, must be at most %d" % (where, count, 2**28))
+    return max(count, 1)
+
+
+def _converter(kind, null):
+    """A function that takes an argument of a call to its C type, or None if ctypes takes it as it is."""
+    if kind in _NUMBERS:
+        return lambda value: _number(value, kind)
+    if isinstance(kind, type) and issubclass(kind, Id):
+        def convert(value):
+            if type(value) is kind:
+                return value
+            if value is None and null:
+                return kind()
+            raise TypeError("%s, a %s is wanted" % (_given(value), kind.__name__))
+        return convert
+    if isinstance(kind, type) and issubclass(kind, Struct):
+        def convert(value):
+            if value is None and not null and kind.__name__ not in ("Quat", "Box"):
+                raise TypeError("None is given, a %s is wanted" % kind.__name__)
+            return kind._made(value)
+        return convert
+    return None
+
+
+def _law_checked(entry, name, needs):
+    """A built-in law, with its arguments checked. needs: numbers of contact history, and vectors among them."""
+    numbers, vectors = needs
+
+    def call(contact, memory, force):
+        if type(contact) is not Contact or type(force) is not ContactForce:
+            wrong, kind = (contact, Contact) if type(contact) is not Contact else (force, ContactForce)
+            raise ArgumentTypeError("%s: %s: %s, a %s is wanted" % (name, "c" if kind is Contact else "f", _given(wrong), kind.__name__))
+        if numbers or memory is not None:
+            if not isinstance(memory, ctypes.Array) or memory._type_ is not Real:
+                raise ArgumentTypeError("%s: memory: %s, the contact history that the law receives is wanted" % (name, _given(memory)))
+            if len(memory) < numbers:
+                raise ArgumentError(
+                    "%s: memory: this law needs %d number%s of contact history, %d %s here; make the world with law_memory=%d or "
+                    "more%s" % (name, numbers, "s"*(numbers > 1), len(memory), "is" if len(memory) == 1 else "are", numbers,
+                                " and law_vectors=1 or more" if vectors else ""))
+            if vectors and getattr(memory, "vectors", 1) < vectors:
+                raise ArgumentError("%s: memory: the first three numbers of its contact history are a vector, which law_vectors "
+                                    "does not count; make the world with law_vectors=1 or more, and give vectors the first places"
+                                    % name)
+        entry(contact, memory, force)
+    return call
+
+
+def _checked(entry, name, names, kinds):
+    """The function `entry`, with its arguments checked, of which ctypes would take numbers modulo 2**32. name, names: of
+    the call and its arguments in Python; "=" behind a name allows None."""
+    if name in _LAW_NEEDS and len(kinds) == 3:
+        return _law_checked(entry, "dem." + name, _LAW_NEEDS[name])
+    places = [(i, _converter(kind, names[i].endswith("="))) for i, kind in enumerate(kinds) if names[i] != "self"]
+    places = [place for place in places if place[1]]
+    ids = [i for i, kind in enumerate(kinds) if isinstance(kind, type) and issubclass(kind, Id) and names[i] != "self"]
+    structs = [(i, kind._type_) for i, kind in enumerate(kinds) if isinstance(kind, type) and issubclass(kind, ctypes._Pointer)
+               and issubclass(kind._type_, Struct) and "." not in name and name != "World"]
+    if not places and not structs:
         return entry
+    where = name if "." in name or name == "World" else "dem." + name
 
     def call(*values):
-        values = list(values)
-        for i, kind, make in places[:len(values)]:
-            try:
-                values[i] = make(values[i]) if make else _number(values[i], kind)
-            except (TypeError, OverflowError) as error:
-                raise type(error)("%s, argument %d: %s" % (name, i + 1, error)) from None
+        values, i = list(values), 0
+        try:
+            for i, convert in places:
+                values[i] = convert(values[i])
+        except (TypeError, ValueError, OverflowError) as error:
+            raise _named(error, "%s: %s" % (where, names[i].rstrip("="))) from None
+        for i in ids:
+            of = values[i]._of
+            if of is not None and of._at != values[0]:
+                raise ArgumentError("%s: %s: %r belongs to another world%s" % (where, names[i].rstrip("="), values[i],
+                                                                              "" if of._at else ", which is closed"))
+        for i, kind in structs:
+            if not isinstance(values[i], kind):
+                raise ArgumentTypeError("%s: %s: %s, a %s is wanted" % (where, names[i].rstrip("="), _given(values[i]), kind.__name__))
         return entry(*values)
+    call.entry = entry                                      # the function of the library itself
     return call
 
 
@@ -213,84 +461,161 @@ def _c(kind):
     return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
 
 
-def _convert(value, kind):
-    """value as the kind of a field: sequences become structs, arrays and pointers to copies."""
-    if isinstance(kind, View):
-        if value is None or isinstance(value, (kind.c, ctypes._Pointer)):
-            return value
-        if issubclass(kind.kind, Struct) and isinstance(value, kind.kind):
-            return ctypes.pointer(value)
-        return ctypes.cast(_array(value, kind.kind), kind.c)
+def _items(value, wanted):
+    """The elements of a sequence."""
+    if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
+        raise TypeError("%s, %s is wanted" % (_given(value), wanted))
+    if hasattr(value, "__array__") and not hasattr(value, "tolist") and not isinstance(value, type):
+        value = value.__array__()                           # a table of pandas
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    try:
+        return list(value)
+    except TypeError:
+        raise TypeError("%s, %s is wanted" % (_given(value), wanted)) from None
+
+
+def _convert(value, kind, exact=True):
+    """value as the kind of a field that is not an array behind a pointer: sequences become structs and arrays."""
+    if kind in _NUMBERS:
+        return _number(value, kind)
     if isinstance(kind, Text) or kind is str:
-        if value is not None and not isinstance(value, (str, bytes, os.PathLike)):
-            raise TypeError("%r is given, a text is needed" % (value,))
-        return os.fsencode(value) if isinstance(value, os.PathLike) else value.encode() if isinstance(value, str) else value
+        return _chars(value)
     if isinstance(kind, type) and issubclass(kind, Struct):
-        return kind.make(value)
+        return kind._made(value)
     if isinstance(kind, Choices):
-        return kind.c(*[_number(item, kind.kind) for item in value])
+        if isinstance(value, str):
+            raise TypeError("%s, %d words are wanted, one for each axis" % (_given(value), kind.size))
+        items = _items(value, "%d words" % kind.size)
+        if items and len(items) != kind.size:
+            raise ValueError("%d words are given, %d are wanted, one for each axis" % (len(items), kind.size))
+        return kind.c(*[_number(item, kind.kind) for item in items])
     if isinstance(kind, type) and issubclass(kind, ctypes.Array):
         if isinstance(value, kind):
             return value
-        items = [_item(item, kind._type_) for item in (value if hasattr(value, "__len__") else (value,))]
-        if len(items) > kind._length_:
-            raise ValueError("%d values are given, at most %d are possible" % (len(items), kind._length_))
-        return kind(*items)
-    return _number(value, kind)
+        if value is None:
+            return kind()
+        if isinstance(value, Struct) and not (issubclass(kind._type_, Struct) and isinstance(value, kind._type_)):
+            value = tuple(value)
+        if exact or _many(value):
+            items = _items(value, "a sequence of %d numbers" % kind._length_)
+        else:
+            items = [value]                                 # one class
+        if len(items) > kind._length_ or exact and items and len(items) != kind._length_:
+            raise ValueError("%d values are given, %s%d are wanted" % (len(items), "" if exact else "at most ", kind._length_))
+        return kind(*[_item(item, kind._type_) for item in items])
+    if kind is ctypes.c_void_p:
+        return _pointer(value)
+    if isinstance(kind, type) and issubclass(kind, enum.IntEnum):
+        return _number(value, kind)
+    if isinstance(kind, type) and issubclass(kind, ctypes._Pointer):
+        if value is None:
+            return kind()
+        if not isinstance(value, kind) and not (isinstance(value, ctypes.Array) and value._type_ is kind._type_):
+            raise TypeError("%s, a pointer or None is wanted" % _given(value))
+        return ctypes.cast(value, kind)
+    return value
+
+
+def _many(value):
+    """True of what has several elements."""
+    return hasattr(value, "__len__") and not isinstance(value, (Struct, type))
 
 
 def _item(value, kind):
     """An element of an array: a struct, a pointer to one, or a number."""
     if issubclass(kind, Struct):
-        return kind.make(value)
+        return kind._made(value)
     if issubclass(kind, ctypes._Pointer):
-        return kind() if value is None else ctypes.pointer(kind._type_.make(value))
+        if value is not None and issubclass(kind._type_, Struct):
+            return ctypes.pointer(kind._type_._made(value))
+        return _convert(value, kind)
     return _number(value, kind)
 
 
-def _array(value, kind, count=None, name="an array"):
+def _array(value, kind, width=1, count=None, null=False):
     """value as a C array of `kind`: the memory of a buffer of that kind itself, otherwise a copy. Nested sequences are
-    flattened. count: the length that is required."""
+    flattened; their last axis must have the length `width`. count: the number of rows that is required."""
+    rows = "N" if count is None else count
+    wanted = "(%s,)" % rows if width == 1 else "(%s, %d)" % (rows, width)
     if value is None:
-        return None
+        if null:
+            return None
+        raise TypeError("None is given, an array of shape %s is wanted" % wanted)
     if isinstance(value, ctypes.Array) and value._type_ is kind:
         array = value
+    elif issubclass(kind, Struct):
+        array = [kind._made(item) for item in _items(value, "a list of %s" % kind.__name__)]
+        array = (kind*len(array))(*array)
     else:
-        array = None
-        if not issubclass(kind, Struct):
-            try:
-                view = memoryview(value)
-                if view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
-                    array = (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
-            except (TypeError, ValueError):
-                pass
-        if array is None:
-            items = list(_flat(value, kind))
-            array = (kind*len(items))(*items)
-    if count is not None and len(array) != count:
-        raise ValueError("%s has %d numbers instead of %d" % (name, len(array), count))
+        array = _reals(value, kind, width, wanted)
+    if len(array) % width:
+        raise ValueError("%d numbers are given, which is no multiple of %d; an array of shape %s is wanted" % (len(array), width, wanted))
+    if count is not None and len(array) != count*width:
+        n = len(array)//width
+        raise ValueError("the shape %s is given, %s is wanted" % ("(%d,)" % n if width == 1 else "(%d, %d)" % (n, width), wanted))
     return array
 
 
-def _flat(value, kind):
+def _reals(value, kind, width, wanted):
+    """Numbers as a C array."""
+    if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
+        raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted))
+    try:
+        view = memoryview(value)
+    except (TypeError, ValueError):
+        view = None
+        if hasattr(value, "__array__") and not isinstance(value, type):     # a table of pandas
+            value = value.__array__()
+    shape = view.shape if view else getattr(value, "shape", None)
+    if isinstance(shape, tuple):
+        if not shape:
+            raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted))
+        if len(shape) > 1 and shape[-1] != width and not (0 in shape):
+            raise ValueError("the shape %s is given, %s is wanted%s" % (
+                shape, wanted, "; transpose it" if len(shape) == 2 and shape[0] == width else ""))
+    if view and view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
+        return (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
     if hasattr(value, "tolist"):
         value = value.tolist()
-    for item in value:
-        if isinstance(item, Struct) and not isinstance(item, kind):
-            yield from _flat(item, kind)
-        elif hasattr(item, "__len__") and not isinstance(item, kind):
-            yield from _flat(item, kind)
-        else:
-            yield kind.make(item) if issubclass(kind, Struct) else _number(item, kind)
+    numbers = []
+    _rows(value, numbers, kind, width, wanted, 0)
+    return (kind*len(numbers))(*numbers)
 
 
-def _count(array, width, name):
-    """The number of rows of an array of rows of `width`."""
-    if array is None:
-        return 0
-    if len(array) % width:
-        raise ValueError("%s has %d numbers, which is no multiple of %d" % (name, len(array), width))
-    return len(array)//width
+def _rows(value, numbers, kind, width, wanted, depth):
+    """Appends the numbers of a nested sequence. A row that has not the length `width` is refused."""
+    try:
+        items = iter(value)
+    except TypeError:
+        raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted)) from None
+    begun, nested = len(numbers), False
+    for item in items:
+        if type(item) is float or type(item) is int and kind in _LIMITS or not hasattr(item, "__iter__") or isinstance(item, (str, bytes)):
+            numbers.append(_number(item, kind))
+            continue
+        if hasattr(item, "tolist"):
+            item = item.tolist()
+            if not hasattr(item, "__iter__"):
+                numbers.append(_number(item, kind))
+                continue
+        if isinstance(item, (dict, set, frozenset)) or depth > 3:
+            raise TypeError("%s, an array of shape %s is wanted" % (_given(item), wanted))
+        if not nested and len(numbers) > begun:
+            raise ValueError("numbers and rows are mixed, an array of shape %s is wanted" % wanted)
+        nested = True
+        _rows(item, numbers, kind, width, wanted, depth + 1)
+    found = len(numbers) - begun
+    if depth and not nested and found != width:
+        raise ValueError("a row has the shape (%d,), an array of shape %s is wanted" % (found, wanted))
+
+
+def _array_of(value, kind, where, width=1, count=None, null=False):
+    """An array that is an argument of a call."""
+    try:
+        return _array(value, kind, width, count, null)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
 
 
 def _view(pointer, kind, shape, owner, const):
@@ -308,82 +633,235 @@ def _view(pointer, kind, shape, owner, const):
     return view.toreadonly() if const else view
 
 
-def _functions(struct):
-    """The Python functions of a struct, by their path in it; none of a struct that C has made."""
-    return getattr(struct, "_functions", None) or {}
+def _plain(value):
+    """A value as Python's own kinds: structs become dicts, arrays lists."""
+    if isinstance(value, (Vec3, Quat)):
+        return tuple(value)
+    if isinstance(value, Struct):
+        return value.to_dict()
+    if isinstance(value, memoryview):
+        return value.tolist()
+    if isinstance(value, ctypes.Array):
+        return [_plain(item) for item in value]
+    return value
+
+
+def _array_bytes(field, kind, struct):
+    """The bytes of an array behind a pointer; None of null."""
+    pointer = getattr(struct, "_" + field)
+    if not pointer:
+        return None
+    if kind.one:
+        return [pointer[0]]
+    count = kind.width*next((getattr(struct, length) for length, arrays in struct.counts.items()
+                             if field in [array for array, _ in arrays]), 0)
+    if issubclass(kind.kind, Struct):
+        return [pointer[i] for i in range(count)]
+    return ctypes.string_at(pointer, count*ctypes.sizeof(kind.kind))
+
+
+def _struct_from(kind, data, arrays, functions, raw):
+    """A struct that was pickled."""
+    struct = kind.from_buffer_copy(data)
+    for name, value in arrays.items():
+        item = kind.kinds[name].kind
+        if isinstance(value, list):
+            array = (item*len(value))(*value)
+        else:
+            array = (item*(len(value)//ctypes.sizeof(item))).from_buffer_copy(value)
+        _set(struct, "_" + name, ctypes.cast(array, kind.kinds[name].c))
+        struct.__dict__.setdefault("_extra", []).append(array)
+    for name, value in raw.items():
+        _set(struct, name, value)
+    if functions:
+        struct.__dict__["_functions"] = functions
+    return struct
 
 
 class Struct(ctypes.Structure):
     """A struct of dem.h. Fields are keyword arguments; fields that are not given are 0."""
-    __slots__ = ("_functions", "_of", "_extra")
-    rows, c_name, counts, kinds = [], "", {}, {}
+    rows, c_name, counts, kinds, counted, lengths, numbers = [], "", {}, {}, (), {}, False
+    # _functions: Python functions, by their path; _of: the world; _extra: what must live as long; _ids: ids that it holds;
+    # _call: the call that changes what this copy shows
+    _functions = _of = _extra = _ids = _call = None
 
     def __init__(self, *values, **fields):
+        if len(values) > len(self.rows) or values and self.numbers and len(values) < len(self.rows):
+            raise ArgumentTypeError("%s: %d values are given, %s%d are wanted (%s)" % (
+                type(self).__name__, len(values), "" if self.numbers else "at most ", len(self.rows), ", ".join(self.kinds)))
+        if values and self.numbers and not fields:
+            super().__init__(*values)
+            return
         super().__init__()
-        self._functions, self._of, self._extra = {}, None, None
-        if len(values) > len(self.rows):
-            raise TypeError("%s has %d fields; %d values are given" % (type(self).__name__, len(self.rows), len(values)))
         if values or fields:
+            both = set(fields).intersection(list(self.kinds)[:len(values)])
+            if both:
+                raise ArgumentTypeError("%s: %s is given twice" % (type(self).__name__, both.pop()))
             self._put(dict(zip(self.kinds, values), **fields))
 
     def _put(self, fields):
-        for name, value in fields.items():
+        for name in fields:
             if name not in self.kinds:
-                raise TypeError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+                raise ArgumentTypeError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+        sizes, pointers = {}, False
+        for name, value in fields.items():
+            if name in self.counts:
+                continue
+            kind = self.kinds[name]
+            if self._ids or self._functions:                # of the value before
+                self.__dict__["_ids"] = {inner: item for inner, item in (self._ids or {}).items() if inner.partition(
+                    ".")[0].partition("[")[0] != name}
+                self.__dict__["_functions"] = {path: item for path, item in (self._functions or {}).items() if path[0] != name}
+            if type(value) is float and kind is ctypes.c_double:
+                _set(self, name, value)
+                continue
             if name == "cylinder" and value in ("x", "y", "z"):
                 value = ord(value)                          # dem.h has the axis as a character
+            if name in _WORDS and isinstance(value, (list, tuple)) and all(isinstance(word, str) for word in value):
+                value = " ".join(value)
             try:
-                ctypes.Structure.__setattr__(self, name, _convert(value, self.kinds[name]))
+                if isinstance(kind, View):
+                    if isinstance(value, ctypes._Pointer):  # nobody knows its length
+                        pointers = True
+                        _set(self, "_" + name, value)
+                    elif value is not None and kind.one:
+                        _set(self, "_" + name, ctypes.pointer(kind.kind._made(value)))
+                    elif value is not None:
+                        array = [value] if isinstance(value, kind.kind) else value
+                        array = _array(array, kind.kind, kind.width)
+                        sizes[name] = len(array)//kind.width
+                        _set(self, "_" + name, ctypes.cast(array, kind.c))
+                    else:
+                        _set(self, "_" + name, None)
+                elif name in self.counted:
+                    array = _convert(value, kind, False)
+                    size = 0 if value is None else len(value) if _many(value) else 1
+                    if size:
+                        sizes[name] = size
+                    _set(self, name, array)
+                elif isinstance(kind, Function) or isinstance(kind, Choices) or kind is str or isinstance(kind, Text) or (
+                        isinstance(kind, type) and issubclass(kind, enum.IntEnum)):
+                    _set(self, name, value)                 # a property
+                else:
+                    _set(self, name, _convert(value, kind))
             except (TypeError, ValueError, OverflowError) as error:
-                raise type(error)("%s.%s: %s" % (type(self).__name__, name, error)) from None
-            for path, item in [((name,), value)] if isinstance(value, Struct) else [
-                    ((name, i), item) for i, item in enumerate(value) if isinstance(item, Struct)] if isinstance(value, (list, tuple)) else []:
-                for inner, function in _functions(item).items():        # C copies structs without their Python functions
-                    self._functions[path + inner] = function
-        for name, (field, width) in self.counts.items():    # a length follows from its array, unless it is given
-            if field in fields and fields[field] is not None:
-                given = fields[field]
-                if isinstance(given, ctypes._Pointer):      # nobody knows its length
-                    continue
-                size = len(_array(given, self.kinds[field].kind)) if isinstance(self.kinds[field], View) else len(
-                    given) if hasattr(given, "__len__") else 1
-                if fields.get(name) and fields[name]*width > size:
-                    raise ValueError("%s.%s is %d, but %s has %d numbers" % (type(self).__name__, name, fields[name], field, size))
-                if not fields.get(name):
-                    setattr(self, name, size//width)
+                raise _named(error, "%s.%s" % (type(self).__name__, name)) from None
+            if isinstance(value, Struct):
+                self._keep(name, value, (name,))
+            elif isinstance(value, (list, tuple)):
+                for i, item in enumerate(value):
+                    if isinstance(item, Struct):
+                        self._keep("%s[%d]" % (name, i), item, (name, i))
+        for length, arrays in self.counts.items():          # a length follows from its arrays
+            self._length(length, arrays, sizes, fields, pointers)
+
+    def _length(self, length, arrays, sizes, fields, pointers):
+        """Sets the length that arrays have in common."""
+        given = fields.get(length)
+        if given is not None:
+            try:
+                given = _number(given, ctypes.c_int)
+            except (TypeError, OverflowError) as error:
+                raise _named(error, "%s.%s" % (type(self).__name__, length)) from None
+        found = [field for field, _ in arrays if field in sizes]
+        if found:
+            count = sizes[found[0]]
+            others = {field: size for field, size in sizes.items() if field in found and size != count}
+            for field, _ in arrays:                         # arrays that are there already
+                if field not in fields and getattr(self, "_" + field, None) and getattr(self, length) != count:
+                    others[field] = getattr(self, length)
+            if others:
+                field, size = others.popitem()
+                raise ArgumentError("%s.%s has %d element%s, %s has %d; both must have as many" % (
+                    type(self).__name__, field, size, "s"*(size != 1), found[0], count))
+            if given and given != count:
+                raise ArgumentError("%s.%s is %d, but %s has %d element%s; leave it out, it follows from the array" % (
+                    type(self).__name__, length, given, found[0], count, "s"*(count != 1)))
+            _set(self, length, count)
+        elif pointers and given is not None:
+            _set(self, length, given)
+        elif given:
+            if given != getattr(self, length):
+                raise ArgumentError("%s.%s is %d, but %s has no elements; leave it out, it follows from the array" % (
+                    type(self).__name__, length, given, arrays[0][0]))
+        elif any(field in fields for field, _ in arrays[:1]) and not pointers:
+            _set(self, length, 0)
+
+    def _keep(self, name, value, path):
+        """Keeps what C does not copy with a struct: its Python functions, and the worlds of its ids."""
+        if value._functions:
+            functions = dict(self._functions or {})
+            functions.update((path + inner, function) for inner, function in value._functions.items())
+            self.__dict__["_functions"] = functions
+        if isinstance(value, Id):
+            if value._of is not None:
+                self.__dict__["_ids"] = dict(self._ids or {}, **{name: value})
+        elif value._ids:
+            self.__dict__["_ids"] = dict(self._ids or {}, **{"%s.%s" % (name, inner): item for inner, item in value._ids.items()})
 
     def __setattr__(self, name, value):
-        kind = type(self).kinds.get(name)
-        if kind in _NUMBERS:
+        kind = self.kinds.get(name)
+        if kind is None:
+            if name[:1] == "_":
+                _set(self, name, value)
+                return
+            raise FieldError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+        base = self
+        while base is not None:
+            if getattr(base, "_call", None):
+                raise FieldError("%s.%s: this struct is a copy, whose change would have no effect; %s" % (
+                    type(self).__name__, name, base._call))
+            base = getattr(base, "_b_base_", None)
+        if kind is ctypes.c_double and type(value) is float:
+            _set(self, name, value)
+        elif kind in _NUMBERS and name not in self.counts:
             try:
                 value = _number(value, kind)
             except (TypeError, OverflowError) as error:
-                raise type(error)("%s.%s: %s" % (type(self).__name__, name, error)) from None
-        super().__setattr__(name, value)
+                raise _named(error, "%s.%s" % (type(self).__name__, name)) from None
+            _set(self, name, value)
+        else:
+            self._put({name: value})
+
+    def __delattr__(self, name):
+        raise FieldError("%s.%s: a field cannot be deleted" % (type(self).__name__, name))
 
     @classmethod
     def make(cls, value):
         """This struct from an instance, a sequence, a dict, or None (zeros)."""
+        return _struct_of(cls, value, cls.__name__ + ".make") if value is not None else cls()
+
+    @classmethod
+    def _made(cls, value):
         if isinstance(value, cls):
             return value
         if value is None:
             return cls()
         if isinstance(value, dict):
+            if not all(isinstance(name, str) for name in value):
+                raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
             return cls(**value)
         first = cls.rows[0][1]
+        nested = isinstance(first, type) and issubclass(first, Struct)
         if isinstance(value, Struct):
+            if not nested:
+                raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
             return cls(value)
-        value = tuple(value)
-        if isinstance(first, type) and issubclass(first, Struct) and len(value) == ctypes.sizeof(cls)//ctypes.sizeof(Real):
+        values = _items(value, "a %s, or %d numbers (%s)" % (cls.__name__, len(cls.rows), ", ".join(cls.kinds)) if cls.numbers else
+                        "a %s" % cls.__name__)
+        if nested and len(values) == ctypes.sizeof(cls)//ctypes.sizeof(Real) and not any(hasattr(v, "__len__") for v in values):
             size = ctypes.sizeof(first)//ctypes.sizeof(Real)
-            return cls(*[value[i:i + size] for i in range(0, len(value), size)])     # a box from six numbers
-        if len(value) != len(cls.rows) and isinstance(first, type) and issubclass(first, Struct):
-            return cls(value)
-        return cls(*value)
+            return cls(*[values[i:i + size] for i in range(0, len(values), size)])     # a box from six numbers
+        if cls.numbers and len(values) != len(cls.rows) or cls.whole and len(values) != len(cls.rows):
+            raise ValueError("%d numbers are given, %d are wanted%s" % (len(values), 6 if cls.whole else len(cls.rows), "" if cls.whole else
+                                                                       " (%s)" % ", ".join(cls.kinds)))
+        if len(values) != len(cls.rows) and nested:
+            return cls(values)
+        return cls(*values)
 
     @classmethod
     def from_param(cls, value):
-        return cls.make(value)
+        return cls._made(value)
 
     def __iter__(self):
         return (getattr(self, name) for name in self.kinds)
@@ -392,12 +870,57 @@ class Struct(ctypes.Structure):
         return len(self.rows)
 
     def __getitem__(self, index):
-        return tuple(self)[index]
+        if isinstance(index, str):
+            if index not in self.kinds:
+                raise ArgumentError("%s has no field %r; it has %s" % (type(self).__name__, index, ", ".join(self.kinds)))
+            return getattr(self, index)
+        try:
+            return tuple(self)[index]
+        except TypeError:
+            raise ArgumentTypeError("%s[...]: %s, the number or the name of a field is wanted" % (
+                type(self).__name__, _given(index))) from None
+        except IndexError:
+            raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
+
+    def keys(self):
+        """The names of the fields: dict(struct) and pandas use them."""
+        return list(self.kinds)
+
+    def to_dict(self):
+        """The fields as a dict of Python's own kinds: numbers, texts, tuples and lists. Bare pointers are left out."""
+        return {name: _plain(getattr(self, name)) for name, kind in self.kinds.items() if not _raw(kind)}
 
     def __eq__(self, other):
-        return tuple(self) == tuple(other) if isinstance(other, (Struct, tuple, list)) else NotImplemented
+        if isinstance(other, Struct) and type(other) is not type(self) and not (self.numbers and other.numbers):
+            return False
+        if not isinstance(other, (Struct, tuple, list)):
+            return NotImplemented
+        mine, others = ([item for item, kind in zip(struct, self.kinds.values()) if not _raw(kind)] if isinstance(struct, Struct)
+                        else list(struct) for struct in (self, other))
+        return len(mine) == len(others) and all(_same(a, b) for a, b in zip(mine, others))
 
     __hash__ = None
+
+    def __reduce_ex__(self, _):
+        arrays = {name: data for name, data in ((name, _array_bytes(name, kind, self)) for name, kind in self.kinds.items()
+                                                if isinstance(kind, View)) if data is not None}
+        raw, c = {}, type(self).from_buffer_copy(self)      # pointers mean nothing elsewhere
+        for (name, kind), field in zip(self._fields_, self.kinds):
+            if isinstance(self.kinds[field], (View, Function)) or kind is ctypes.c_char_p or kind is ctypes.c_void_p or issubclass(
+                    kind, ctypes._Pointer):
+                if kind is ctypes.c_char_p and getattr(self, name) is not None:
+                    raw[name] = getattr(self, name)
+                ctypes.memset(ctypes.addressof(c) + getattr(type(self), name).offset, 0, ctypes.sizeof(kind))
+        return _struct_from, (type(self), bytes(c), arrays, dict(self._functions or {}), raw)
+
+    def __copy__(self):
+        copy = type(self).from_buffer_copy(self)            # its arrays are those of the original
+        copy.__dict__.update(_functions=dict(self._functions or {}), _of=self._of, _ids=self._ids, _extra=(self._extra, self._objects))
+        return copy
+
+    def __deepcopy__(self, memo):
+        make, arguments = self.__reduce_ex__(4)
+        return make(*arguments)
 
     def __repr__(self):
         shown = []
@@ -412,6 +935,102 @@ class Struct(ctypes.Structure):
         return "%s(%s)" % (type(self).__name__, ", ".join(shown))
 
 
+Struct.whole = False            # a sequence must have all fields
+
+
+def _raw(kind):
+    """True of a pointer whose length nobody knows."""
+    return isinstance(kind, type) and issubclass(kind, ctypes._Pointer) or kind is ctypes.c_void_p
+
+
+def _same(a, b):
+    """Equality of two fields."""
+    if isinstance(a, ctypes.Array):
+        a = list(a)
+    if isinstance(b, ctypes.Array):
+        b = list(b)
+    if isinstance(a, list) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(map(_same, a, b))
+    try:
+        return bool(a == b)
+    except ValueError:          # arrays of numpy
+        return False
+
+
+class Numbers(Struct):
+    """A struct of real numbers, such as Vec3, which takes part in sums and products like an array of numpy."""
+
+    def __array__(self, dtype=None, copy=None):
+        import numpy
+        return numpy.array(tuple(self), dtype=dtype)
+
+    @staticmethod
+    def _arrays(value):
+        """A value with tuples in the places of structs of numbers."""
+        if isinstance(value, Numbers):
+            return value.__array__()
+        if isinstance(value, (list, tuple)):
+            return type(value)(map(Numbers._arrays, value))
+        return value
+
+    def __array_ufunc__(self, function, method, *inputs, **options):
+        return getattr(function, method)(*Numbers._arrays(inputs), **options)
+
+    def __array_function__(self, function, kinds, arguments, options):
+        return function(*Numbers._arrays(arguments), **options)
+
+    def _with_each(self, other, function, swap=False):
+        if isinstance(other, (int, float)) or not hasattr(other, "__len__") and hasattr(other, "__float__"):
+            other = (other,)*len(self)
+        elif not isinstance(other, (Numbers, tuple, list)) or len(other) != len(self):
+            return NotImplemented                           # an array of numpy answers itself
+        return type(self)(*[function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
+
+    def __add__(self, other):
+        return self._with_each(other, operator.add)
+
+    __radd__ = __add__
+
+    def __sub__(self, other):
+        return self._with_each(other, operator.sub)
+
+    def __rsub__(self, other):
+        return self._with_each(other, operator.sub, True)
+
+    def __mul__(self, other):
+        return self._with_each(other, operator.mul)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other):
+        return self._with_each(other, operator.truediv)
+
+    def __rtruediv__(self, other):
+        return self._with_each(other, operator.truediv, True)
+
+    def __neg__(self):
+        return type(self)(*[-a for a in self])
+
+    def __pos__(self):
+        return type(self)(*self)
+
+    def __abs__(self):
+        return math.sqrt(sum(a*a for a in self))
+
+    def dot(self, other):
+        """The scalar product with three (Quat: four) numbers."""
+        return sum(a*b for a, b in zip(self, type(self)._made(other)))
+
+
+class Vector(Numbers):
+    """What a Vec3 has beside its fields: v + w, 2*v, v/2, abs(v) (its length), v.dot(w), v.cross(w)."""
+
+    def cross(self, other):
+        """The vector product."""
+        (a, b, c), (x, y, z) = self, type(self)._made(other)
+        return type(self)(b*z - c*y, c*x - a*z, a*y - b*x)
+
+
 def _field(name, kind, doc):
     """A property for a field whose C value is not what Python users expect."""
     raw = "_" + name
@@ -419,8 +1038,10 @@ def _field(name, kind, doc):
     def get(self):
         value = getattr(self, raw)
         if isinstance(kind, Function):
-            return _functions(self).get((name,)) or (value if value else None)
+            return (self._functions or {}).get((name,)) or (value if value else None)
         if isinstance(kind, View):
+            if kind.one:
+                return value[0] if value else None
             shape = []
             for axis in kind.shape:
                 length = getattr(self, axis) if isinstance(axis, str) else axis
@@ -441,21 +1062,36 @@ def _field(name, kind, doc):
 
     def put(self, value):
         if isinstance(kind, Function):
-            if not hasattr(self, "_functions"):
-                raise TypeError("%s.%s: this struct is a part of another; make it with its function, then assign it" % (
-                    type(self).__name__, name))
-            self._functions.pop((name,), None)
+            if self._b_base_ is not None:
+                raise TypeError("this struct is a part of another; make it with its function, then assign it")
+            functions = dict(self._functions or {})
+            functions.pop((name,), None)
             if value is None:
-                setattr(self, raw, kind.c())
+                _set(self, raw, kind.c())
             elif isinstance(value, ctypes._CFuncPtr):       # a function compiled in C
-                setattr(self, raw, ctypes.cast(value, kind.c))
-            elif callable(value):
-                self._functions[name,] = value
+                _compiled(value)
+                _set(self, raw, ctypes.cast(value, kind.c))
+            elif callable(value) and not isinstance(value, type):
+                functions[name,] = value
             else:
-                raise TypeError("%s.%s: %r is no function" % (type(self).__name__, name, value))
+                raise TypeError("%s, a function is wanted" % _given(value))
+            self.__dict__["_functions"] = functions
         else:
-            setattr(self, raw, _convert(value, kind))
+            _set(self, raw, _convert(value, kind))
     return property(get, put, doc=doc)
+
+
+def _compiled(function):
+    """Refuses a function of a library that was compiled for another precision."""
+    for library in (getattr(function, "_objects", None) or {}).values():
+        if isinstance(library, ctypes.CDLL):
+            try:
+                size = ctypes.c_int.in_dll(library, "dempy_real_size").value
+            except ValueError:
+                continue
+            if size != ctypes.sizeof(Real):
+                raise ValueError("the library %s is compiled for reals of %d bytes, this process has %d; compile it again with "
+                                 "dem.compile" % (library._name, size, ctypes.sizeof(Real)))
 
 
 def _struct(cls):
@@ -463,6 +1099,8 @@ def _struct(cls):
     fields, docs = [], []
     cls._functions_ = {}
     for name, kind, doc in cls.rows:
+        if isinstance(kind, View) and not kind.shape and not kind.one:
+            kind.shape = tuple(length for length, arrays in cls.counts.items() if name in [array for array, _ in arrays])
         special = isinstance(kind, (View, Text, Function, Choices)) or kind is str or issubclass(kind, enum.IntEnum)
         c = ctypes.c_char_p if kind is str else _c(kind)
         fields.append(("_" + name if special else name, c))
@@ -473,6 +1111,9 @@ def _struct(cls):
         if doc:
             docs.append("%s: %s" % (name, doc))
     cls.kinds = {name: kind for name, kind, _ in cls.rows}
+    cls.counted = {field for arrays in cls.counts.values() for field, _ in arrays if not isinstance(cls.kinds[field], View)}
+    cls.numbers = issubclass(cls, Numbers)
+    cls.whole = cls.__name__ == "Box"
     cls._fields_ = fields
     if docs:
         cls.__doc__ = (cls.__doc__ or "") + "\n\n" + "\n".join(docs)
@@ -481,19 +1122,39 @@ def _struct(cls):
 
 class Id(Struct):
     """The id of an object of a world. Two ids are equal if they name the same object."""
-    __slots__ = ()
+
+    @classmethod
+    def _made(cls, value):
+        """An id from an id; None is the id 0, which names nothing."""
+        if type(value) is cls:
+            return value
+        if value is None:
+            return cls()
+        raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
+
+    def __setattr__(self, name, value):
+        if name[:1] != "_":
+            raise FieldError("%s.%s: an id does not change, and its object has %s" % (type(self).__name__, name, ", ".join(
+                word for word in dir(type(self)) if word[0] != "_" and word not in dir(Id))))
+        _set(self, name, value)
 
     def of(self, world):
         """The same id, as a part of another world: of a copy that a function of yours sees, or of a checkpoint."""
+        if not isinstance(world, WorldBase):
+            raise ArgumentTypeError("%s.of: world: %s, a World is wanted" % (type(self).__name__, _given(world)))
         copy = type(self).from_buffer_copy(self)
-        copy._functions, copy._of, copy._extra = {}, world, None
+        copy._of = world
         return copy
 
     @property
     def world(self):
-        if getattr(self, "_of", None) is None:
-            raise ValueError("this id belongs to no world yet; write id.of(world)")
+        """The world that it belongs to."""
+        if self._of is None:
+            raise ArgumentError("%r belongs to no world yet; write id.of(world)" % self)
         return self._of
+
+    def __reduce_ex__(self, _):
+        return _struct_from, (type(self), bytes(self), {}, {}, {})
 
     def __bool__(self):
         return any(bytes(self))
@@ -505,20 +1166,14 @@ class Id(Struct):
         return hash((type(self), bytes(self)))
 
 
-# ---- errors -------------------------------------------------------------------------------------
-
-class Error(Exception):
-    """A call of dem.h has failed. The text is the error message of dem.h: the function, what is wrong with the value,
-    the limit, the likely cause, the remedy. result: the dem.Result."""
-    result = None
-
+# ---- worlds -------------------------------------------------------------------------------------
 
 class _Context:
     """What the functions that a world calls share: the first exception, and the world."""
 
     def __init__(self, world):
-        self.raised, self.kept, self.go_on, self.memory, self.reals = None, {}, None, 0, 0
-        self.world_of = weakref.ref(world)
+        self.raised, self.kept, self.go_on, self.memory, self.vectors, self.reals = None, {}, None, 0, 0, 0
+        self.world_of, self.runs, self.ids, self.stop = weakref.ref(world), None, None, False
 
     def fail(self, error):
         if self.raised is None:
@@ -529,15 +1184,82 @@ class _Context:
         return world if world is not None and world._at == pointer else World._borrow(pointer, self)
 
 
+def _held(value):
+    """True if something holds an object beside the variable of the caller. A dict of the caller's variables, which debuggers
+    and World.close make, does not count."""
+    more = _refs(value) - _TWO
+    return more > 0 and more > sum(type(holder) is dict and "context" in holder and "function" in holder
+                                   for holder in gc.get_referrers(value))
+
+
+def _references():
+    value = object()
+    return _refs(value), (lambda value: _refs(value))(value)
+
+
+_ONE, _TWO = _references()
+
+
+def _kept(name):
+    """The exception of a function that keeps an argument whose memory dem.h uses again."""
+    return ArgumentError("your function keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
+                         "copy.copy(%s), or the numbers that you need" % (name, name))
+
+
+def _returned(value, kind):
+    """The exception of a function that returns what it must not."""
+    return ArgumentTypeError("your function (%s) returned %s, but what it returns has no effect; it sets the fields of its "
+                             "arguments and returns nothing" % (kind, _given(value).replace(" is given", "")))
+
+
+def _real_from(value, kind):
+    """A number that a function of yours returned."""
+    try:
+        return _number(value, ctypes.c_double)
+    except TypeError as error:
+        raise ArgumentTypeError("your function (%s) must return a number: %s" % (
+            kind, str(error).replace("is given", "was returned"))) from None
+
+
 class Handle:
     """A world, a replay or slabs: memory that the library owns."""
     _at = _context = None
+
+    @property
+    def _c(self):
+        """The pointer, for a call."""
+        at = self._at
+        if at is None:
+            raise ArgumentError("%s.%s: this %s is closed" % (type(self).__name__, sys._getframe(1).f_code.co_name,
+                                                             type(self).__name__.lower()))
+        return at
+
+    def __setattr__(self, name, value):
+        found, kind = getattr(type(self), name, None), type(self).__name__
+        if name[:1] == "_" or isinstance(found, property) and found.fset:
+            object.__setattr__(self, name, value)
+        elif hasattr(type(self), name + "_set"):
+            raise FieldError("%s.%s: an assignment has no effect; call %s_set" % (kind, name, name))
+        elif isinstance(self, WorldBase) and name in WorldDesc.kinds:
+            raise FieldError("%s.%s is fixed when the world is made; write dem.World(%s=...)" % (kind, name, name))
+        elif found is not None:
+            raise FieldError("%s.%s cannot be set; dem.h computes it" % (kind, name) if isinstance(found, property) else
+                             "%s.%s is a method; call it" % (kind, name))
+        else:
+            raise FieldError("%s has no attribute %r that can be set; keep what is yours in a variable of your own" % (kind, name))
 
     def _text(self):
         return ""
 
     def _raise(self, kind):
-        raise kind(self._text() or "no message")
+        text = self._text() or "no message"
+        if kind is Error:                                   # a null id
+            kind = (MemoryError if ": out of memory" in text else FileError if ": cannot write" in text or ": cannot read" in text
+                    else ArgumentError)
+        runs = self._context.runs if self._context else None
+        if runs and runs != threading.get_ident() and "called from a function that" in text:
+            text = "%s: another thread runs this world; one thread at a time may use a world" % text.partition(":")[0]
+        raise kind(text)
 
     def _ok(self, result):
         """Raises the exception of a function of yours, or that of a result other than OK."""
@@ -552,20 +1274,34 @@ class Handle:
     def _run(self, function, *arguments):
         """Calls a function that takes long. Ctrl-C meanwhile is noted: a progress function then ends the run, and the
         caller gets KeyboardInterrupt."""
-        before = _signal.getsignal(_signal.SIGINT) if threading.get_ident() == threading.main_thread().ident else None
-        if not callable(before):
-            return function(*arguments)
-
-        def note(number, frame):
-            try:
-                before(number, frame)
-            except BaseException as error:
-                self._context.fail(error)
-        _signal.signal(_signal.SIGINT, note)
+        context, thread = self._context, threading.get_ident()
+        if context.runs and context.runs != thread:
+            raise ArgumentError("%s.%s: another thread runs this world; one thread at a time may use a world" % (
+                type(self).__name__, sys._getframe(1).f_code.co_name))
+        outer, context.runs, context.stop = context.runs, thread, False
+        before = _signal.getsignal(_signal.SIGINT) if thread == threading.main_thread().ident else None
+        _RUNNING.add(context)
         try:
-            return function(*arguments)
+            if not callable(before):
+                return function(*arguments)
+
+            def note(number, frame):
+                try:
+                    before(number, frame)
+                except BaseException as error:
+                    context.fail(error)
+            _signal.signal(_signal.SIGINT, note)
+            try:
+                return function(*arguments)
+            finally:
+                _signal.signal(_signal.SIGINT, before)
         finally:
-            _signal.signal(_signal.SIGINT, before)
+            context.runs = outer
+            if not outer:
+                _RUNNING.discard(context)
+            if context.stop:                                # Ctrl-C, and another thread is the main thread
+                context.stop = False
+                context.fail(KeyboardInterrupt())
 
     def _id(self, value):
         self._ok(0)
@@ -600,10 +1336,14 @@ class Handle:
 
     def _bound(self, struct, key=None):
         """A struct whose Python functions have become C functions, which live as long as the world."""
-        if not _functions(struct):
+        for name, item in (struct._ids or {}).items():
+            if item._of._at != self._at:
+                raise ArgumentError("%s.%s: %s: %r belongs to another world%s" % (
+                    type(self).__name__, sys._getframe(1).f_code.co_name, name, item, "" if item._of._at else ", which is closed"))
+        if not struct._functions:
             return struct
         copy = type(struct).from_buffer_copy(struct)
-        copy._functions, copy._of, copy._extra = {}, None, struct
+        copy._extra = struct
         made = []
         for path, function in struct._functions.items():
             target = copy
@@ -620,6 +1360,9 @@ class Handle:
         """A C function of a Python function, for one call."""
         if function is None:
             return kind.c()
+        if not callable(function) or isinstance(function, type):
+            raise ArgumentTypeError("%s.%s: %s, a function is wanted" % (type(self).__name__, sys._getframe(1).f_code.co_name,
+                                                                        _given(function)))
         if function is _go_on:
             if not self._context.go_on:
                 self._context.go_on = kind.wrap(_go_on, self._context, None)
@@ -628,13 +1371,16 @@ class Handle:
             return ctypes.cast(function, kind.c)
         return kind.wrap(function, self._context, None)
 
-    def _with(self, struct):
-        """Ties a struct that the library has filled to the world, whose memory its views keep alive."""
-        struct._of, struct._extra = self, self._memory
+    def _with(self, struct, call="dem.h computes it"):
+        """Ties a struct that the library has filled to the world, whose memory its views keep alive. call: what changes
+        the values that it shows."""
+        struct.__dict__.update(_of=self, _extra=self._memory, _call=call)
         return struct
 
     def _print(self, function, out, *arguments):
         """Calls a function that prints to a FILE, and prints its text to `out` (sys.stdout)."""
+        if out is not None and not hasattr(out, "write"):
+            raise ArgumentTypeError("%s: out: %s, a file of Python is wanted" % (sys._getframe(1).f_code.co_name, _given(out)))
         libc = ctypes.CDLL(None) if os.name == "posix" else ctypes.cdll.ucrtbase
         libc.tmpfile.restype = ctypes.c_void_p
         file = ctypes.c_void_p(libc.tmpfile())
@@ -655,7 +1401,7 @@ class Handle:
     def _taken(self, struct, free):
         """A copy of a struct in memory of Python; frees the memory of the library."""
         copy = type(struct).from_buffer_copy(struct)
-        copy._functions, copy._of, copy._extra = {}, None, []
+        copy._extra = []
         for name, kind in struct.kinds.items():
             pointer = getattr(struct, "_" + name) if isinstance(kind, View) else None
             if pointer:
@@ -667,12 +1413,26 @@ class Handle:
         return copy
 
     def __reduce_ex__(self, _):
-        raise TypeError("a %s owns memory of dem.h and cannot be copied; write and read a checkpoint" % type(self).__name__)
+        raise ArgumentTypeError("a %s owns memory of dem.h and cannot be copied or pickled; write and read a checkpoint"
+                                % type(self).__name__)
 
     def close(self):
         """Ends it and frees its memory; further calls raise an error. Leaving a `with` block does the same."""
         if self._at is not None:
+            if self._context and self._context.runs or self._called():
+                raise ArgumentError("%s.close: a function of yours that dem.h calls, or another thread, cannot close what runs; "
+                                    "return true from a progress function to stop a run" % type(self).__name__)
             self._free()
+
+    def _called(self):
+        """True inside of a function that dem.h calls for this world."""
+        frame = sys._getframe(1)
+        while frame is not None:
+            if frame.f_code.co_name == "call" and frame.f_code.co_filename == __file__ and frame.f_locals.get(
+                    "context") is self._context is not None:
+                return True
+            frame = frame.f_back
+        return False
 
     def __enter__(self):
         return self
@@ -682,7 +1442,8 @@ class Handle:
 
     def __del__(self):
         try:
-            self.close()
+            if self._at is not None:
+                self._free()
         except Exception:
             pass
 
@@ -727,6 +1488,7 @@ class WorldBase(Handle):
 
     def _create(self, desc):
         self._context = _Context(self)
+        desc._functions = dict(desc._functions or {})
         functions = {path[0] for path in desc._functions}
         if functions & {"law", "law_rate", "force", "body_force", "body_reals_fn"} and not desc.threads:
             desc.threads = 1                        # Python runs one function at a time
@@ -734,11 +1496,17 @@ class WorldBase(Handle):
             force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
 
             def both(body, id, time, sum, torque):
-                sum.x, sum.y, sum.z = force(body.position, body.velocity, body.radius, body.mass, time)
+                made = force(body.position, body.velocity, body.radius, body.mass, time)
+                try:
+                    sum.x, sum.y, sum.z = made
+                except (TypeError, ValueError) as error:
+                    raise ArgumentTypeError("your function (force) must return three numbers: %s" % _given(made).replace(
+                        "is given", "was returned")) from error
                 if whole:
                     whole(body, id, time, sum, torque)
             desc._functions["body_force",] = both
-        self._context.memory, self._context.reals = desc.law_memory, len((desc.body_reals or "").split())
+        self._context.memory, self._context.vectors = desc.law_memory, desc.law_vectors
+        self._context.reals = len((desc.body_reals or "").split())
         bound = self._bound(desc, "desc")
         at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
         if not at:
@@ -755,6 +1523,43 @@ class WorldBase(Handle):
     def _text(self):
         return (_lib.dem_world_error_get(self._at) or b"").decode(errors="replace")
 
+    @property
+    def gravity(self):
+        """The acceleration of gravity, m/s2. An assignment calls gravity_set."""
+        return self.desc.gravity
+
+    @gravity.setter
+    def gravity(self, value):
+        self.gravity_set(value)
+
+    @property
+    def dt(self):
+        """The time step in use, s; 0 before the first step if dem.h chooses it. An assignment calls dt_set."""
+        return self.desc.dt
+
+    @dt.setter
+    def dt(self, value):
+        self.dt_set(value)
+
+    @property
+    def bodies(self):
+        """The arrays of all bodies, by the order of their slots: the order of adding, as long as none is removed. See
+        Rows."""
+        self._c
+        return Rows(self)
+
+    def __len__(self):
+        return self.bodies.count
+
+    def __bool__(self):
+        return True
+
+    def __repr__(self):
+        if self._at is None:
+            return "<World, closed>"
+        shown = self.body_counts
+        return "<World at %.6g s: %d bodies, step %d>" % (self.time, shown.present, self.steps)
+
     def _free(self):
         try:
             results = [self._memory.complete(film) for film in list(self._memory.films)]
@@ -768,12 +1573,17 @@ class ReplayBase(Handle):
     """What a Replay has beside the functions of dem.h. It is recorded until it or its world is closed."""
 
     def __init__(self, at, world, path):
-        self._film, self._world, self._context, self._memory, self.path = _Film(at), world, world._context, world._memory, path
+        self._film, self._world, self._context, self._memory, self._path = _Film(at), world, world._context, world._memory, path
         self._memory.films.add(self._film)
 
     @property
     def _at(self):
         return self._film.at
+
+    @property
+    def path(self):
+        """The path of the file."""
+        return self._path
 
     def __del__(self):
         pass                                        # the world goes on recording
@@ -805,28 +1615,289 @@ class SlabsBase(Handle):
 
 
 def progress_print(world, done, seconds_left):
-    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print)."""
-    world._print(_lib.dem_progress_print, sys.stderr, world._at, done, seconds_left)
+    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print). In a
+    notebook it rewrites one line."""
+    if not isinstance(world, WorldBase):
+        raise ArgumentTypeError("dem.progress_print: world: %s, a World is wanted" % _given(world))
+    if "ipykernel" not in sys.modules:
+        world._print(_lib.dem_progress_print, sys.stderr, world._c, done, seconds_left)
+        return
+    text = io.StringIO()
+    world._print(_lib.dem_progress_print, text, world._c, done, seconds_left)
+    if text.getvalue().strip():                             # it prints a line for every tenth
+        print("\r" + " ".join(text.getvalue().split("\n")).strip().ljust(100), end="\n" if done >= 1 else "", file=sys.stderr, flush=True)
+
+
+_RUNNING = set()                # contexts of the worlds that run
+
+
+def _interrupted(number, frame):
+    """The handler of Ctrl-C: ends the runs of all threads, then does what Python does."""
+    for context in list(_RUNNING):
+        context.stop = True
+    signal.default_int_handler(number, frame)
+
+
+if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, _interrupted)
 
 
 def _go_on(world, done, seconds_left):
     """The progress function of runs that are given none: lets Python handle Ctrl-C."""
 
 
+@functools.lru_cache(None)
+def _history(count, vectors):
+    """The type of a contact history: `vectors` of its leading triples are vectors."""
+    return type("History", (ctypes.Array,), {"_type_": Real, "_length_": count, "vectors": vectors, "__doc__": "A contact history."})
+
+
 def tail(memory, first):
     """The numbers of a contact history from number `first` on, for built-in laws that follow another one."""
-    part = (Real*(len(memory) - first)).from_address(ctypes.addressof(memory) + first*ctypes.sizeof(Real))
+    if not isinstance(memory, ctypes.Array) or memory._type_ is not Real:
+        raise ArgumentTypeError("dem.tail: memory: %s, the contact history that a law receives is wanted" % _given(memory))
+    try:
+        first = _number(first, ctypes.c_int)
+    except (TypeError, OverflowError) as error:
+        raise _named(error, "dem.tail: first") from None
+    if not 0 <= first <= len(memory):
+        raise ArgumentError("dem.tail: first: %d is given, must be from 0 to %d, the numbers of this contact history" % (
+            first, len(memory)))
+    kind = _history(len(memory) - first, max(0, getattr(memory, "vectors", 5) - (first + 2)//3))
+    part = kind.from_address(ctypes.addressof(memory) + first*ctypes.sizeof(Real))
     part.owner = memory
     return part
+
+
+class Rows:
+    """The arrays of all bodies of a world. Row i belongs to the body world.bodies[i] in all of them, and keeps it while the
+    world runs: rows are in the order of the slots of bodies, which is the order of adding. A body that is added after
+    another one was removed may take its slot, and then its place.
+
+    Each use of an array is a copy of what the world has then, read-only: positions (N x 4: x, y, z, radius, m), velocities
+    (N x 4: x, y, z, 0, m/s), spins (rad/s), forces (N, without gravity), torques (N m), masses (kg), slots, materials,
+    orientations (N x 4: w, x, y, z), shapes, reals (N x real_count), rates, groups. world.bodies_memory has the arrays of
+    dem.h without a copy, in an order that changes while the world runs.
+
+    An assignment sets all rows: world.bodies.velocities = array of shape (N, 3); so do positions and spins."""
+    __slots__ = ("_world",)
+
+    def __init__(self, world):
+        object.__setattr__(self, "_world", world)
+
+    def _struct(self):
+        return _lib.dem_bodies_get(self._world._c)
+
+    @property
+    def count(self):
+        """The number of bodies."""
+        return self._struct().count
+
+    @property
+    def real_count(self):
+        """Numbers per body (World(body_reals=...))."""
+        return self._struct().real_count
+
+    def _get(self, name):
+        world, kind = self._world, Bodies.kinds[name]
+        found = _lib.dem_bodies_get(world._c)
+        count = found.count
+        if name == "groups":
+            pointer, item, shape = found.groups, ctypes.c_uint32, [count]
+        else:
+            pointer, item = getattr(found, "_" + name), kind.kind
+            shape = [count if axis == "count" else found.real_count if axis == "real_count" else axis for axis in kind.shape]
+        if not pointer:
+            return None
+        width = shape[1] if len(shape) > 1 else 1
+        array = (item*(count*width))()
+        if count:
+            if "dempy_rows" in _lib.__dict__:
+                result = _lib.dempy_rows(world._at, getattr(Bodies, name if name == "groups" else "_" + name).offset,
+                                         width*ctypes.sizeof(item), count, ctypes.addressof(array))
+                if result:
+                    raise MemoryError("World.bodies.%s: out of memory" % name)
+            else:
+                rows = sorted(range(count), key=found.slots.__getitem__)
+                for i, row in enumerate(rows):
+                    array[width*i:width*i + width] = pointer[width*row:width*row + width]
+        if not count:
+            return memoryview(array).cast("B").cast(item._type_).toreadonly()
+        return memoryview(array).cast("B").cast(item._type_, shape).toreadonly()
+
+    def _all(self):
+        """The ids of all bodies."""
+        world, context = self._world, self._world._context
+        counts = _lib.dem_body_counts_get(world._c)
+        key = world._at, bytes(counts)
+        if context.ids is None or context.ids[0] != key:
+            count = self.count
+            ids = (Body*count)()
+            if count:
+                if "dempy_ids" in _lib.__dict__:
+                    if _lib.dempy_ids(world._at, count, ctypes.addressof(ids)):
+                        raise MemoryError("World.bodies: out of memory")
+                else:
+                    slots = self._struct().slots
+                    for i, row in enumerate(sorted(range(count), key=slots.__getitem__)):
+                        ids[i] = _lib.dem_body_id_get(world._at, row)
+            context.ids = key, ids
+        return context.ids[1]
+
+    def __len__(self):
+        return self.count
+
+    def __getitem__(self, index):
+        ids = self._all()
+        if isinstance(index, slice):
+            return [Body.from_buffer_copy(item).of(self._world) for item in ids[index]]
+        try:
+            return ids[index].of(self._world)
+        except TypeError:
+            raise ArgumentTypeError("World.bodies: %s, the number of a body is wanted" % _given(index)) from None
+        except IndexError:
+            raise NoSuchError("World.bodies: %s is given, the world has %d bodies" % (index, len(ids))) from None
+
+    def __iter__(self):
+        return iter(self[:])
+
+    def to_dict(self):
+        """Columns that pandas.DataFrame takes: x, y, z, radius, vx, vy, vz, wx, wy, wz, fx, fy, fz, mass, material, and the
+        numbers of bodies by their names."""
+        columns = {}
+        for name, letters in (("positions", "x y z radius"), ("velocities", "vx vy vz"), ("spins", "wx wy wz"), ("forces", "fx fy fz")):
+            rows = self._get(name).tolist() if self.count else []
+            for i, letter in enumerate(letters.split()):
+                columns[letter] = [row[i] for row in rows]
+        columns["mass"], columns["material"] = self._get("masses").tolist(), self._get("materials").tolist()
+        names = (self._world.desc.body_reals or "").split()
+        rows = self._get("reals").tolist() if names and self.count else []
+        columns.update((name, [row[i] for row in rows]) for i, name in enumerate(names))
+        return columns
+
+    def __setattr__(self, name, value):
+        if name not in ("positions", "velocities", "spins"):
+            raise FieldError("World.bodies.%s cannot be set; positions, velocities and spins can" % name)
+        ids = self._all()
+        array = _array_of(value, Real, "World.bodies.%s" % name, 3, len(ids))
+        if "dempy_put" in _lib.__dict__:
+            self._world._ok(_lib.dempy_put(self._world._c, len(ids), ctypes.addressof(ids), *[
+                ctypes.addressof(array) if name == field else None for field in ("positions", "velocities", "spins")]))
+        else:
+            for i, body in enumerate(ids):
+                body.of(self._world).set(**{{"positions": "position", "velocities": "velocity", "spins": "spin"}[name]:
+                                            array[3*i:3*i + 3]})
+
+    def __repr__(self):
+        return "<%d bodies: %s>" % (self.count, ", ".join(name for name in Bodies.kinds if name not in ("count", "real_count")))
+
+
+class Structs:
+    """Structs that dem.h has filled, such as world.contacts: a sequence, which numpy.asarray takes as a structured array and
+    to_dict() as columns."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __len__(self):
+        return len(self._array)
+
+    def __getitem__(self, index):
+        try:
+            return self._array[index]
+        except TypeError:
+            raise ArgumentTypeError("%s, the number of an element is wanted" % _given(index)) from None
+        except IndexError:
+            raise NoSuchError("%s is given, there are %d elements" % (index, len(self._array))) from None
+
+    def __array__(self, dtype=None, copy=None):
+        import numpy
+        kind = numpy.dtype(self._array._type_)
+        array = numpy.frombuffer(self._array, kind) if len(self._array) else numpy.zeros(0, kind)
+        return array if dtype is None or dtype == kind else array.astype(dtype)
+
+    def to_dict(self):
+        """Columns that pandas.DataFrame takes: a list for each number, such as a, b, point_x, normal_z, overlap."""
+        columns = {}
+
+        def add(kind, offset, path):
+            for (raw, c), name in zip(kind._fields_, kind.kinds):
+                at = offset + getattr(kind, raw).offset
+                if isinstance(c, type) and issubclass(c, Struct):
+                    add(c, at, path + [name])
+                elif c in _NUMBERS:
+                    columns["_".join(path + [name])] = [c.from_buffer(self._array, at + i*size).value for i in range(len(self))]
+        size = ctypes.sizeof(self._array._type_)
+        add(self._array._type_, 0, [])
+        return columns
+
+    def __repr__(self):
+        return "<%d %s>" % (len(self), self._array._type_.__name__)
+
+
+def _row_property(name, doc):
+    return property(lambda self: self._get(name), lambda self, value: self.__setattr__(name, value), doc=doc)
+
+
+def compile(source, flags=()):
+    """Compiles C functions, such as a contact law, and returns the library: World(law=dem.compile(text).sticky).
+
+    source: the text, or a path that ends with .c. The header dem.h of this module is found by #include "dem.h", and the
+    precision is that of this process. flags: more flags of the compiler. The library is kept beside that of dem.h; its name
+    contains a digest of the text, the flags, dem.h and the precision, so that a text that has changed is compiled again."""
+    if isinstance(flags, str):
+        flags = flags.split()
+    if not isinstance(source, (str, os.PathLike)):
+        raise ArgumentTypeError("dem.compile: source: %s, a text in C or a path is wanted" % _given(source))
+    if not isinstance(flags, (list, tuple)) or not all(isinstance(flag, str) for flag in flags):
+        raise ArgumentTypeError("dem.compile: flags: %s, a list of texts is wanted" % _given(flags))
+    if isinstance(source, os.PathLike) or "\n" not in source and source.endswith(".c"):
+        try:
+            with open(source) as file:
+                source = file.read()
+        except OSError as error:
+            raise FileError("dem.compile: cannot read %s: %s" % (os.fspath(source), error.strerror)) from None
+    header = _header()
+    with open(header, "rb") as file:
+        text = file.read()
+    whole = "#line 1 \"source\"\n" + source + "\n#line 1 \"dem.compile\"\n#include \"dem.h\"\nconst int dempy_real_size = (int)sizeof(dem_real);\n"
+    command = os.environ.get("CC", "cc").split() + os.environ.get("DEM_CFLAGS", "-O2").split()
+    command += ["-DDEM_REAL=float"] if Real is ctypes.c_float else []
+    command += ["-ffp-contract=off", "-shared", "-fPIC", "-I" + os.path.dirname(header)] + list(flags)
+    digest = hashlib.sha256(text + whole.encode() + "\n".join(command + [str(Real), sys.platform, platform.machine()]).encode())
+    folder = _folder(header, None)
+    path = os.path.join(folder, "law-%s-%s.so" % ("float" if Real is ctypes.c_float else "double", digest.hexdigest()[:16]))
+    if not os.path.exists(path):
+        if not shutil.which(command[0]):
+            raise FileError("dem.compile: the C compiler %r was not found; install one (Debian package gcc), or set CC" % command[0])
+        with tempfile.TemporaryDirectory(dir=folder) as work:
+            file_c, made = os.path.join(work, "law.c"), os.path.join(work, "law.so")
+            with open(file_c, "w") as file:
+                file.write(whole)
+            result = subprocess.run(command + [file_c, "-o", made, "-lm"], capture_output=True, text=True)
+            if result.returncode:
+                raise FormatError("dem.compile: the text does not compile: %s" % result.stderr.replace(file_c, "source")[:2000])
+            os.replace(made, path)
+    library = ctypes.CDLL(path)
+    size = ctypes.c_int.in_dll(library, "dempy_real_size").value
+    if size != ctypes.sizeof(Real):
+        raise ArgumentError("dem.compile: the text sets DEM_REAL to a type of %d bytes, this process has reals of %d; leave it out, "
+                            "or set the environment variable DEM_REAL before import dem" % (size, ctypes.sizeof(Real)))
+    return library
 
 
 class Page:
     """A replay file, which Jupyter shows inside a notebook: dem.Page("drum.html")."""
 
     def __init__(self, path, height=560):
+        path = os.fsdecode(_text_of(path, "dem.Page: path"))
         self.path, self.height = path, height
 
     def _repr_html_(self):
-        with open(self.path, encoding="utf-8") as file:
-            return '<iframe srcdoc="%s" width="100%%" height="%d" style="border:0"></iframe>' % (
-                html.escape(file.read()), self.height)
+        try:
+            with open(self.path, encoding="utf-8") as file:
+                text = file.read()
+        except OSError as error:
+            raise FileError("dem.Page: cannot read %s: %s" % (self.path, error.strerror)) from None
+        return '<iframe srcdoc="%s" width="100%%" height="%d" style="border:0"></iframe>' % (
+                html.escape(text), self.height)

@@ -25,13 +25,17 @@ below are the comments of dem.h, which name C functions. Rules of names:
 """
 import ctypes
 import enum
+import functools
+import gc
 import hashlib
 import html
+import io
 import math
 import operator
 import os
 import platform
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -42,7 +46,8 @@ import weakref
 try:
     import _signal              # signal.signal takes 15 us
 except ImportError:
-    import signal as _signal
+    _signal = signal
+_refs = sys.getrefcount
 VERSION_MAJOR = 0
 VERSION_MINOR = 1
 VERSION_PATCH = 0
@@ -89,6 +94,132 @@ void dempy_law_roll_constant(const dem_contact *c, dem_real *memory, dem_contact
 void dempy_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_roll_epsd(c, memory, f); }
 void dempy_law_twist(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dem_law_twist(c, memory, f); }
 """
+_LAW_NEEDS = {      # numbers of contact history that a built-in law needs, and leading vectors among them
+    'law_hertz': (0, 0),
+    'law_linear': (0, 0),
+    'law_hysteretic': (1, 0),
+    'law_viscous': (0, 0),
+    'law_step': (0, 0),
+    'law_spring': (3, 1),
+    'law_mindlin': (4, 1),
+    'law_mindlin_rescaled': (4, 1),
+    'law_roll_step': (0, 0),
+    'law_roll_constant': (3, 1),
+    'law_roll_epsd': (3, 1),
+    'law_twist': (1, 0),
+}
+
+# ---- errors, one for each result ------------------------------------------------------------------
+
+
+class Result(enum.IntEnum):
+    """The result of a call. dem_world_error_get returns the message, dem_result_name_get the name."""
+    OK = 0
+    # a value is out of range, an id is invalid, or a call is not allowed here
+    ERROR_ARGUMENT = 1
+    # the allocator returned null
+    ERROR_MEMORY = 2
+    # a file cannot be opened, read, written or renamed
+    ERROR_FILE = 3
+    # the contents of a file are damaged, or of another format, version or scene
+    ERROR_FORMAT = 4
+    # the time step is too large for a contact, a spin, or the speed of a body or wall
+    ERROR_TIME_STEP = 5
+    # a state or force is not finite, an overlap is larger than a radius, or a motion gives an impossible pose
+    ERROR_UNSTABLE = 6
+    # a function of yours stopped the run, dem_world_settle ran out of time, or a step with impulses exceeded the
+    # tolerance (unsolved_stops)
+    ERROR_STOPPED = 7
+
+
+class Error(Exception):
+    """A call of dem.h has failed. The text is the error message of dem.h: the function, what is wrong with the value,
+    the limit, the likely cause, the remedy. result: the dem.Result."""
+    result = None
+
+
+_ERRORS = {}
+
+
+class ArgumentError(Error, ValueError):
+    """a value is out of range, an id is invalid, or a call is not allowed here"""
+    result = Result.ERROR_ARGUMENT
+
+
+_ERRORS[1] = ArgumentError
+
+
+class MemoryError(Error, MemoryError):
+    """the allocator returned null"""
+    result = Result.ERROR_MEMORY
+
+
+_ERRORS[2] = MemoryError
+
+
+class FileError(Error, OSError):
+    """a file cannot be opened, read, written or renamed"""
+    result = Result.ERROR_FILE
+
+
+_ERRORS[3] = FileError
+
+
+class FormatError(Error, ValueError):
+    """the contents of a file are damaged, or of another format, version or scene"""
+    result = Result.ERROR_FORMAT
+
+
+_ERRORS[4] = FormatError
+
+
+class TimeStepError(Error):
+    """the time step is too large for a contact, a spin, or the speed of a body or wall"""
+    result = Result.ERROR_TIME_STEP
+
+
+_ERRORS[5] = TimeStepError
+
+
+class UnstableError(Error):
+    """a state or force is not finite, an overlap is larger than a radius, or a motion gives an impossible pose"""
+    result = Result.ERROR_UNSTABLE
+
+
+_ERRORS[6] = UnstableError
+
+
+class StoppedError(Error):
+    """a function of yours stopped the run, dem_world_settle ran out of time, or a step with impulses exceeded the
+    tolerance (unsolved_stops)
+    """
+    result = Result.ERROR_STOPPED
+
+
+_ERRORS[7] = StoppedError
+
+
+class ArgumentTypeError(Error, TypeError):
+    """An argument or a field has a wrong type. The text names the call, the argument, what is given and what is wanted."""
+    result = Result.ERROR_ARGUMENT
+
+
+class ArgumentRangeError(Error, OverflowError):
+    """A number does not fit into the type of C."""
+    result = Result.ERROR_ARGUMENT
+
+
+class FieldError(Error, AttributeError):
+    """An assignment to what cannot be set. The text names the call that changes it."""
+    result = Result.ERROR_ARGUMENT
+
+
+class LoadError(Error, ImportError):
+    """The library cannot be compiled or loaded."""
+
+
+class NoSuchError(ArgumentError, IndexError):
+    """There is no body of this number."""
 # ---- the shared library ------------------------------------------------------------------------
 
 Real = ctypes.c_float if os.environ.get("DEM_REAL") == "float" else ctypes.c_double
@@ -100,11 +231,63 @@ _SOURCE = """
 """
 
 
+# The arrays of all bodies in the order of their slots, and what sets or reads them together.
+_ROWS = r"""
+#include <stdlib.h>
+#include <string.h>
+static uint32_t *dempy_ranks(const dem_bodies *b) {
+    uint32_t most = 0, sum = 0, k, *rank;
+    int i;
+    for (i = 0; i < b->count; i++) if (b->slots[i] > most) most = b->slots[i];
+    rank = (uint32_t *)calloc((size_t)most + 1, sizeof *rank);
+    if (!rank) return 0;
+    for (i = 0; i < b->count; i++) rank[b->slots[i]] = 1;
+    for (k = 0; k <= most; k++) { const uint32_t here = rank[k]; rank[k] = sum; sum += here; }
+    return rank;
+}
+int dempy_rows(const dem_world *w, size_t field, size_t width, int count, char *out) {
+    const dem_bodies b = dem_bodies_get(w);
+    const char *from;
+    uint32_t *rank;
+    int i;
+    memcpy(&from, (const char *)&b + field, sizeof from);
+    if (!from || count != b.count) return 1;
+    if (!(rank = dempy_ranks(&b))) return 2;
+    for (i = 0; i < b.count; i++) memcpy(out + width*rank[b.slots[i]], from + width*(size_t)i, width);
+    free(rank);
+    return 0;
+}
+int dempy_ids(const dem_world *w, int count, dem_body *out) {
+    const dem_bodies b = dem_bodies_get(w);
+    uint32_t *rank;
+    int i;
+    if (count != b.count) return 1;
+    if (!(rank = dempy_ranks(&b))) return 2;
+    for (i = 0; i < b.count; i++) out[rank[b.slots[i]]] = dem_body_id_get(w, i);
+    free(rank);
+    return 0;
+}
+int dempy_put(dem_world *w, int count, const dem_body *ids, const dem_real *x, const dem_real *v, const dem_real *s) {
+    int i;
+    for (i = 0; i < count; i++) {
+        dem_body_state state;
+        int result = dem_body_get(w, ids[i], &state);
+        if (x) state.position = dem_vec3_make(x[3*i], x[3*i + 1], x[3*i + 2]);
+        if (v) state.velocity = dem_vec3_make(v[3*i], v[3*i + 1], v[3*i + 2]);
+        if (s) state.spin = dem_vec3_make(s[3*i], s[3*i + 1], s[3*i + 2]);
+        if (!result) result = dem_body_set(w, ids[i], &state);
+        if (result) return result;
+    }
+    return 0;
+}
+"""
+
+
 def _compiler(folder):
     """The command that compiles a shared library: the compiler and those flags that it accepts."""
     command = os.environ.get("CC", "cc").split() + os.environ.get("DEM_CFLAGS", "-O2").split()
     if not shutil.which(command[0]):
-        raise ImportError("dem.py: the C compiler %r was not found, so dem.h cannot be compiled; install one (Debian "
+        raise LoadError("dem.py: the C compiler %r was not found, so dem.h cannot be compiled; install one (Debian "
                           "package gcc), or set CC, or pass a library to dem.load" % command[0])
     if Real is ctypes.c_float:
         command.append("-DDEM_REAL=float")
@@ -121,19 +304,19 @@ def _compiler(folder):
     return command
 
 
-def build(header=None, folder=None):
-    """Compiles dem.h to a shared library, unless that has been done before, and returns its path.
-
-    header: path of dem.h. Without it: the environment variable DEM_H, or dem.h in the folder of dem.py, two folders
-    above, or in /usr/local/include. folder: where the library is kept. Without it: DEM_BUILD, or the folder build
-    beside dem.h, or ~/.cache/dem if that cannot be written. The environment variables CC (cc) and DEM_CFLAGS (-O2)
-    give the compiler and its flags; DEM_REAL=float compiles in single precision."""
-    here = os.path.dirname(os.path.abspath(__file__))
+def _header(header=None):
+    """The path of dem.h."""
     places = [header or os.environ.get("DEM_H")] if header or "DEM_H" in os.environ else [
-        os.path.join(here, "dem.h"), os.path.join(here, "..", "..", "dem.h"), "/usr/local/include/dem.h"]
-    header = next((os.path.abspath(place) for place in places if os.path.isfile(place)), None)
-    if not header:
-        raise ImportError("dem.py: dem.h was not found (%s); copy it beside dem.py, or set DEM_H" % ", ".join(places))
+        os.path.join(here, *up, "dem.h") for here in (os.path.dirname(os.path.abspath(__file__)), os.path.dirname(
+            os.path.realpath(__file__))) for up in ((), ("..", ".."))] + ["/usr/local/include/dem.h"]
+    found = next((os.path.abspath(place) for place in places if os.path.isfile(place)), None)
+    if not found:
+        raise LoadError("dem.py: dem.h was not found (%s); copy it beside dem.py, or set DEM_H" % ", ".join(places))
+    return found
+
+
+def _folder(header, folder):
+    """The folder in which libraries are kept."""
     folder = folder or os.environ.get("DEM_BUILD") or os.path.join(os.path.dirname(header), "build")
     try:
         os.makedirs(folder, exist_ok=True)
@@ -141,7 +324,21 @@ def build(header=None, folder=None):
     except OSError:
         folder = os.path.join(os.path.expanduser("~"), ".cache", "dem")
         os.makedirs(folder, exist_ok=True)
-    source = _SOURCE + _INLINE + "const size_t dempy_sizes[] = {%s, 0};\n" % ", ".join(
+    return folder
+
+
+def build(header=None, folder=None):
+    """Compiles dem.h to a shared library, unless that has been done before, and returns its path.
+
+    header: path of dem.h. Without it: the environment variable DEM_H, or dem.h in the folder of dem.py, two folders
+    above, or in /usr/local/include. folder: where the library is kept. Without it: DEM_BUILD, or the folder build
+    beside dem.h, or ~/.cache/dem if that cannot be written. The environment variables CC (cc) and DEM_CFLAGS (-O2)
+    give the compiler and its flags; DEM_REAL=float compiles in single precision."""
+    header, folder = (value if value is None else os.fsdecode(_text_of(value, "dem.build: " + name))
+                      for name, value in (("header", header), ("folder", folder)))
+    header = _header(header)
+    folder = _folder(header, folder)
+    source = _SOURCE + _INLINE + _ROWS + "const size_t dempy_sizes[] = {%s, 0};\n" % ", ".join(
         "sizeof(%s)" % kind.c_name for kind in structs)
     with open(header, "rb") as file:
         text = file.read()
@@ -160,7 +357,7 @@ def build(header=None, folder=None):
         print("dem.py: compiling %s, once; this takes 10 to 30 s" % header, file=sys.stderr)
         result = subprocess.run(command, capture_output=True, text=True)
         if result.returncode:
-            raise ImportError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
+            raise LoadError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
         os.replace(os.path.join(work, "dem.so"), path)      # complete or absent, also if several processes compile
     return path
 
@@ -185,39 +382,44 @@ _lib = _Library()
 def load(path=None):
     """Loads the library at `path`, or without a path the one that dem.build() returns. Other functions call it
     automatically. A library of another version, precision or layout of structs raises ImportError."""
-    name = path or build()
-    library = ctypes.CDLL(name)
-    for function, result, arguments in _FUNCTIONS:
+    path = os.fsdecode(_text_of(path, "dem.load: path")) if path is not None else build()
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        raise LoadError("dem.load: %s" % error) from None
+    for function, result, arguments, name, names in _FUNCTIONS:
         try:
             entry = getattr(library, function)
         except AttributeError:          # inline functions are in libraries that dem.build() has made
             if function.startswith("dempy_"):
                 continue
-            raise ImportError("dem.py: %s has no function %s; it is not a library of this dem.h" % (name, function)) from None
+            raise LoadError("dem.py: %s has no function %s; it is not a library of this dem.h" % (path, function)) from None
         entry.restype, entry.argtypes = result, arguments
-        _lib.__dict__[function] = _checked(entry, function, arguments or [])
+        _lib.__dict__[function] = _checked(entry, name, names, arguments)
     if hasattr(library, "dempy_sizes"):
         sizes = (ctypes.c_size_t*(len(structs) + 1)).in_dll(library, "dempy_sizes")
         for size, kind in zip(sizes, structs):
             if size != ctypes.sizeof(kind):
-                raise ImportError("dem.py: %s has %d bytes in dem.h and %d in dem.py; make dem.py again: python3 make.py"
+                raise LoadError("dem.py: %s has %d bytes in dem.h and %d in dem.py; make dem.py again: python3 make.py"
                                   % (kind.c_name, size, ctypes.sizeof(kind)))
     world = library.dem_world_create_checked(WorldDesc(), VERSION, ctypes.sizeof(Real))
     if not world:
-        raise ImportError("dem.py: %s is of another version than %d.%d.%d, or not in %s precision; build it from the "
-                          "dem.h that belongs to dem.py" % (name, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH,
+        raise LoadError("dem.py: %s is of another version than %d.%d.%d, or not in %s precision; build it from the "
+                          "dem.h that belongs to dem.py" % (path, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH,
                                                             "single" if Real is ctypes.c_float else "double"))
     library.dem_world_destroy(world)
-    _lib.__dict__["path"] = name
+    _lib.__dict__["path"] = path
 
 
 # ---- values: Python objects to C and back -------------------------------------------------------
 
 class View:
-    """The kind of a pointer to `kind`, with the names of the fields that hold the lengths of its axes."""
+    """The kind of a pointer to `kind`, with the names of the fields that hold the lengths of its axes. one: it points to
+    one struct, not to an array."""
 
-    def __init__(self, kind, *shape, const=False):
-        self.kind, self.shape, self.const, self.c = kind, shape, const, ctypes.POINTER(kind)
+    def __init__(self, kind, *shape, const=False, one=False):
+        self.kind, self.shape, self.const, self.one, self.c = kind, shape, const, one, ctypes.POINTER(kind)
+        self.width = shape[1] if len(shape) > 1 and isinstance(shape[1], int) else 1
 
 
 class Text:
@@ -231,7 +433,7 @@ class Choices:
     """The kind of an array of numbers of an enum."""
 
     def __init__(self, kind, size):
-        self.kind, self.c = kind, ctypes.c_int*size
+        self.kind, self.size, self.c = kind, size, ctypes.c_int*size
 
 
 class Function:
@@ -247,11 +449,36 @@ _LIMITS = {kind: (-2**(8*ctypes.sizeof(kind) - 1) if signed else 0, 2**(8*ctypes
     ((ctypes.c_uint8, ctypes.c_uint16, ctypes.c_uint32, ctypes.c_uint64, ctypes.c_uint, ctypes.c_ulong, ctypes.c_size_t), 0))
     for kind in kinds}
 _NUMBERS = {ctypes.c_float, ctypes.c_double, *_LIMITS}
+_set = ctypes.Structure.__setattr__
+_WORDS = {"groups", "body_reals", "law_memory_names", "columns"}    # texts that are lists of names
+
+
+def _given(value):
+    """A value that is refused, as error messages show it."""
+    if value is None:
+        return "None is given"
+    kind, shape = type(value).__name__, getattr(value, "shape", None)
+    if isinstance(shape, tuple):
+        return "a %s of shape %s is given" % (kind, shape)
+    try:
+        text = repr(value)
+    except Exception:
+        text = "<%s>" % kind
+    return "%s (%s) is given" % (text if len(text) <= 60 else text[:57] + "...", kind)
+
+
+def _named(error, where):
+    """The exception of this library for a wrong value: `where` says which call and which argument or field."""
+    kind = (type(error) if isinstance(error, Error) else ArgumentTypeError if isinstance(error, TypeError) else
+            ArgumentRangeError if isinstance(error, OverflowError) else ArgumentError)
+    return kind("%s: %s" % (where, error))
 
 
 def _number(value, kind):
     """value as a number of an enum (which may be given by name) or of a C type. A text, a float in the place of a whole
     number and a bool in the place of a real raise TypeError; a number that does not fit raises OverflowError."""
+    if kind is ctypes.c_double and type(value) is float:
+        return value
     names = isinstance(kind, type) and issubclass(kind, enum.IntEnum)
     if names and isinstance(value, str):
         try:
@@ -265,38 +492,190 @@ def _number(value, kind):
         try:
             whole = operator.index(value)
         except TypeError:
-            raise TypeError("%r is given, a whole number is needed" % (value,)) from None
+            raise TypeError("%s, %s is wanted" % (_given(value), "a word or a number of %s" % kind.__name__ if names
+                                                  else "a whole number")) from None
         low, high = _LIMITS[ctypes.c_int if names else kind]
         if not low <= whole <= high:
             raise OverflowError("%d is given, must be from %d to %d" % (whole, low, high))
+        if names and whole not in kind._value2member_map_:
+            raise ValueError("%s has no %d; it has %s" % (kind.__name__, whole, ", ".join(
+                "%d (%s)" % (member, member.name.lower()) for member in kind)))
         return whole
     if kind in _NUMBERS:
-        if type(value) is float and kind is ctypes.c_double:
-            return value
         if isinstance(value, (str, bytes, bytearray, bool)) or not (hasattr(value, "__float__") or hasattr(value, "__index__")):
-            raise TypeError("%r is given, a number is needed" % (value,))
-        real = float(value)
+            raise TypeError("%s, a number is wanted" % _given(value))
+        try:
+            real = float(value)
+        except (TypeError, ValueError):             # an array of several numbers
+            raise TypeError("%s, a number is wanted" % _given(value)) from None
         if kind is ctypes.c_float and math.isinf(kind(real).value) and not math.isinf(real):
             raise OverflowError("%r does not fit into single precision" % (value,))
         return real
     return value
 
 
-def _checked(entry, name, kinds):
-    """The function `entry`, with its numbers checked: ctypes would take them modulo 2**32."""
-    places = [(i, kind, kind.make if isinstance(kind, type) and issubclass(kind, Struct) else None)
-              for i, kind in enumerate(kinds) if kind in _NUMBERS or isinstance(kind, type) and issubclass(kind, Struct)]
-    if not places:
+def _pointer(value):
+    """value as an untyped pointer."""
+    if value is None:
+        return None
+    if isinstance(value, (ctypes.Array, ctypes.Structure, ctypes._CFuncPtr)):
+        return ctypes.addressof(value)
+    if isinstance(value, (ctypes._Pointer, ctypes.c_void_p)):
+        return ctypes.cast(value, ctypes.c_void_p).value
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**(8*ctypes.sizeof(ctypes.c_void_p)):
+        return value
+    raise TypeError("%s, a pointer or None is wanted" % _given(value))
+
+
+def _chars(value, null=True):
+    """value as the bytes of a C text."""
+    if isinstance(value, (str, os.PathLike)):
+        value = os.fsencode(value)
+    if value is None and null:
+        return None
+    if not isinstance(value, bytes):
+        raise TypeError("%s, a text is wanted" % _given(value))
+    if b"\0" in value:
+        raise ValueError("%s, a text without the character 0 is wanted" % _given(value))
+    return value
+
+
+def _text_of(value, where):
+    """value as the bytes of a C text; None is refused."""
+    try:
+        return _chars(value, False)
+    except (TypeError, ValueError) as error:
+        raise _named(error, where) from None
+
+
+def _data_of(value, where):
+    """value as bytes: of a text, or of a buffer."""
+    try:
+        return value.encode() if isinstance(value, str) else bytes(memoryview(value))
+    except TypeError:
+        raise ArgumentTypeError("%s: %s, a text or bytes are wanted" % (where, _given(value))) from None
+
+
+def _enum_of(value, kind, where):
+    try:
+        return _number(value, kind)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
+
+
+def _struct_of(kind, value, where):
+    """value as a struct of this kind: None is refused."""
+    if value is None:
+        raise ArgumentTypeError("%s: None is given, a %s is wanted" % (where, kind.__name__))
+    try:
+        return kind._made(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
+
+
+def _parts_of(value, world, where):
+    """Wall parts with their functions bound."""
+    try:
+        parts = [WallPart._made(item) for item in _items(value, "a list of WallPart")]
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
+    return [world._bound(part) for part in parts]
+
+
+def _handle_of(value, kind, where):
+    """The pointer of a world that is an argument."""
+    if not isinstance(value, kind):
+        raise ArgumentTypeError("%s: %s, a %s is wanted" % (where, _given(value), kind.__name__))
+    return value._c
+
+
+def _size_of(count, where):
+    """The length of an array that a call fills."""
+    try:
+        count = _number(count, ctypes.c_int)
+    except (TypeError, OverflowError) as error:
+        raise _named(error, where) from None
+    if count > 2**28:
+        raise ArgumentRangeError("%s: %d is given, must be at most %d" % (where, count, 2**28))
+    return max(count, 1)
+
+
+def _converter(kind, null):
+    """A function that takes an argument of a call to its C type, or None if ctypes takes it as it is."""
+    if kind in _NUMBERS:
+        return lambda value: _number(value, kind)
+    if isinstance(kind, type) and issubclass(kind, Id):
+        def convert(value):
+            if type(value) is kind:
+                return value
+            if value is None and null:
+                return kind()
+            raise TypeError("%s, a %s is wanted" % (_given(value), kind.__name__))
+        return convert
+    if isinstance(kind, type) and issubclass(kind, Struct):
+        def convert(value):
+            if value is None and not null and kind.__name__ not in ("Quat", "Box"):
+                raise TypeError("None is given, a %s is wanted" % kind.__name__)
+            return kind._made(value)
+        return convert
+    return None
+
+
+def _law_checked(entry, name, needs):
+    """A built-in law, with its arguments checked. needs: numbers of contact history, and vectors among them."""
+    numbers, vectors = needs
+
+    def call(contact, memory, force):
+        if type(contact) is not Contact or type(force) is not ContactForce:
+            wrong, kind = (contact, Contact) if type(contact) is not Contact else (force, ContactForce)
+            raise ArgumentTypeError("%s: %s: %s, a %s is wanted" % (name, "c" if kind is Contact else "f", _given(wrong), kind.__name__))
+        if numbers or memory is not None:
+            if not isinstance(memory, ctypes.Array) or memory._type_ is not Real:
+                raise ArgumentTypeError("%s: memory: %s, the contact history that the law receives is wanted" % (name, _given(memory)))
+            if len(memory) < numbers:
+                raise ArgumentError(
+                    "%s: memory: this law needs %d number%s of contact history, %d %s here; make the world with law_memory=%d or "
+                    "more%s" % (name, numbers, "s"*(numbers > 1), len(memory), "is" if len(memory) == 1 else "are", numbers,
+                                " and law_vectors=1 or more" if vectors else ""))
+            if vectors and getattr(memory, "vectors", 1) < vectors:
+                raise ArgumentError("%s: memory: the first three numbers of its contact history are a vector, which law_vectors "
+                                    "does not count; make the world with law_vectors=1 or more, and give vectors the first places"
+                                    % name)
+        entry(contact, memory, force)
+    return call
+
+
+def _checked(entry, name, names, kinds):
+    """The function `entry`, with its arguments checked, of which ctypes would take numbers modulo 2**32. name, names: of
+    the call and its arguments in Python; "=" behind a name allows None."""
+    if name in _LAW_NEEDS and len(kinds) == 3:
+        return _law_checked(entry, "dem." + name, _LAW_NEEDS[name])
+    places = [(i, _converter(kind, names[i].endswith("="))) for i, kind in enumerate(kinds) if names[i] != "self"]
+    places = [place for place in places if place[1]]
+    ids = [i for i, kind in enumerate(kinds) if isinstance(kind, type) and issubclass(kind, Id) and names[i] != "self"]
+    structs = [(i, kind._type_) for i, kind in enumerate(kinds) if isinstance(kind, type) and issubclass(kind, ctypes._Pointer)
+               and issubclass(kind._type_, Struct) and "." not in name and name != "World"]
+    if not places and not structs:
         return entry
+    where = name if "." in name or name == "World" else "dem." + name
 
     def call(*values):
-        values = list(values)
-        for i, kind, make in places[:len(values)]:
-            try:
-                values[i] = make(values[i]) if make else _number(values[i], kind)
-            except (TypeError, OverflowError) as error:
-                raise type(error)("%s, argument %d: %s" % (name, i + 1, error)) from None
+        values, i = list(values), 0
+        try:
+            for i, convert in places:
+                values[i] = convert(values[i])
+        except (TypeError, ValueError, OverflowError) as error:
+            raise _named(error, "%s: %s" % (where, names[i].rstrip("="))) from None
+        for i in ids:
+            of = values[i]._of
+            if of is not None and of._at != values[0]:
+                raise ArgumentError("%s: %s: %r belongs to another world%s" % (where, names[i].rstrip("="), values[i],
+                                                                              "" if of._at else ", which is closed"))
+        for i, kind in structs:
+            if not isinstance(values[i], kind):
+                raise ArgumentTypeError("%s: %s: %s, a %s is wanted" % (where, names[i].rstrip("="), _given(values[i]), kind.__name__))
         return entry(*values)
+    call.entry = entry                                      # the function of the library itself
     return call
 
 
@@ -304,84 +683,161 @@ def _c(kind):
     return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
 
 
-def _convert(value, kind):
-    """value as the kind of a field: sequences become structs, arrays and pointers to copies."""
-    if isinstance(kind, View):
-        if value is None or isinstance(value, (kind.c, ctypes._Pointer)):
-            return value
-        if issubclass(kind.kind, Struct) and isinstance(value, kind.kind):
-            return ctypes.pointer(value)
-        return ctypes.cast(_array(value, kind.kind), kind.c)
+def _items(value, wanted):
+    """The elements of a sequence."""
+    if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
+        raise TypeError("%s, %s is wanted" % (_given(value), wanted))
+    if hasattr(value, "__array__") and not hasattr(value, "tolist") and not isinstance(value, type):
+        value = value.__array__()                           # a table of pandas
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    try:
+        return list(value)
+    except TypeError:
+        raise TypeError("%s, %s is wanted" % (_given(value), wanted)) from None
+
+
+def _convert(value, kind, exact=True):
+    """value as the kind of a field that is not an array behind a pointer: sequences become structs and arrays."""
+    if kind in _NUMBERS:
+        return _number(value, kind)
     if isinstance(kind, Text) or kind is str:
-        if value is not None and not isinstance(value, (str, bytes, os.PathLike)):
-            raise TypeError("%r is given, a text is needed" % (value,))
-        return os.fsencode(value) if isinstance(value, os.PathLike) else value.encode() if isinstance(value, str) else value
+        return _chars(value)
     if isinstance(kind, type) and issubclass(kind, Struct):
-        return kind.make(value)
+        return kind._made(value)
     if isinstance(kind, Choices):
-        return kind.c(*[_number(item, kind.kind) for item in value])
+        if isinstance(value, str):
+            raise TypeError("%s, %d words are wanted, one for each axis" % (_given(value), kind.size))
+        items = _items(value, "%d words" % kind.size)
+        if items and len(items) != kind.size:
+            raise ValueError("%d words are given, %d are wanted, one for each axis" % (len(items), kind.size))
+        return kind.c(*[_number(item, kind.kind) for item in items])
     if isinstance(kind, type) and issubclass(kind, ctypes.Array):
         if isinstance(value, kind):
             return value
-        items = [_item(item, kind._type_) for item in (value if hasattr(value, "__len__") else (value,))]
-        if len(items) > kind._length_:
-            raise ValueError("%d values are given, at most %d are possible" % (len(items), kind._length_))
-        return kind(*items)
-    return _number(value, kind)
+        if value is None:
+            return kind()
+        if isinstance(value, Struct) and not (issubclass(kind._type_, Struct) and isinstance(value, kind._type_)):
+            value = tuple(value)
+        if exact or _many(value):
+            items = _items(value, "a sequence of %d numbers" % kind._length_)
+        else:
+            items = [value]                                 # one class
+        if len(items) > kind._length_ or exact and items and len(items) != kind._length_:
+            raise ValueError("%d values are given, %s%d are wanted" % (len(items), "" if exact else "at most ", kind._length_))
+        return kind(*[_item(item, kind._type_) for item in items])
+    if kind is ctypes.c_void_p:
+        return _pointer(value)
+    if isinstance(kind, type) and issubclass(kind, enum.IntEnum):
+        return _number(value, kind)
+    if isinstance(kind, type) and issubclass(kind, ctypes._Pointer):
+        if value is None:
+            return kind()
+        if not isinstance(value, kind) and not (isinstance(value, ctypes.Array) and value._type_ is kind._type_):
+            raise TypeError("%s, a pointer or None is wanted" % _given(value))
+        return ctypes.cast(value, kind)
+    return value
+
+
+def _many(value):
+    """True of what has several elements."""
+    return hasattr(value, "__len__") and not isinstance(value, (Struct, type))
 
 
 def _item(value, kind):
     """An element of an array: a struct, a pointer to one, or a number."""
     if issubclass(kind, Struct):
-        return kind.make(value)
+        return kind._made(value)
     if issubclass(kind, ctypes._Pointer):
-        return kind() if value is None else ctypes.pointer(kind._type_.make(value))
+        if value is not None and issubclass(kind._type_, Struct):
+            return ctypes.pointer(kind._type_._made(value))
+        return _convert(value, kind)
     return _number(value, kind)
 
 
-def _array(value, kind, count=None, name="an array"):
+def _array(value, kind, width=1, count=None, null=False):
     """value as a C array of `kind`: the memory of a buffer of that kind itself, otherwise a copy. Nested sequences are
-    flattened. count: the length that is required."""
+    flattened; their last axis must have the length `width`. count: the number of rows that is required."""
+    rows = "N" if count is None else count
+    wanted = "(%s,)" % rows if width == 1 else "(%s, %d)" % (rows, width)
     if value is None:
-        return None
+        if null:
+            return None
+        raise TypeError("None is given, an array of shape %s is wanted" % wanted)
     if isinstance(value, ctypes.Array) and value._type_ is kind:
         array = value
+    elif issubclass(kind, Struct):
+        array = [kind._made(item) for item in _items(value, "a list of %s" % kind.__name__)]
+        array = (kind*len(array))(*array)
     else:
-        array = None
-        if not issubclass(kind, Struct):
-            try:
-                view = memoryview(value)
-                if view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
-                    array = (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
-            except (TypeError, ValueError):
-                pass
-        if array is None:
-            items = list(_flat(value, kind))
-            array = (kind*len(items))(*items)
-    if count is not None and len(array) != count:
-        raise ValueError("%s has %d numbers instead of %d" % (name, len(array), count))
+        array = _reals(value, kind, width, wanted)
+    if len(array) % width:
+        raise ValueError("%d numbers are given, which is no multiple of %d; an array of shape %s is wanted" % (len(array), width, wanted))
+    if count is not None and len(array) != count*width:
+        n = len(array)//width
+        raise ValueError("the shape %s is given, %s is wanted" % ("(%d,)" % n if width == 1 else "(%d, %d)" % (n, width), wanted))
     return array
 
 
-def _flat(value, kind):
+def _reals(value, kind, width, wanted):
+    """Numbers as a C array."""
+    if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
+        raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted))
+    try:
+        view = memoryview(value)
+    except (TypeError, ValueError):
+        view = None
+        if hasattr(value, "__array__") and not isinstance(value, type):     # a table of pandas
+            value = value.__array__()
+    shape = view.shape if view else getattr(value, "shape", None)
+    if isinstance(shape, tuple):
+        if not shape:
+            raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted))
+        if len(shape) > 1 and shape[-1] != width and not (0 in shape):
+            raise ValueError("the shape %s is given, %s is wanted%s" % (
+                shape, wanted, "; transpose it" if len(shape) == 2 and shape[0] == width else ""))
+    if view and view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
+        return (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
     if hasattr(value, "tolist"):
         value = value.tolist()
-    for item in value:
-        if isinstance(item, Struct) and not isinstance(item, kind):
-            yield from _flat(item, kind)
-        elif hasattr(item, "__len__") and not isinstance(item, kind):
-            yield from _flat(item, kind)
-        else:
-            yield kind.make(item) if issubclass(kind, Struct) else _number(item, kind)
+    numbers = []
+    _rows(value, numbers, kind, width, wanted, 0)
+    return (kind*len(numbers))(*numbers)
 
 
-def _count(array, width, name):
-    """The number of rows of an array of rows of `width`."""
-    if array is None:
-        return 0
-    if len(array) % width:
-        raise ValueError("%s has %d numbers, which is no multiple of %d" % (name, len(array), width))
-    return len(array)//width
+def _rows(value, numbers, kind, width, wanted, depth):
+    """Appends the numbers of a nested sequence. A row that has not the length `width` is refused."""
+    try:
+        items = iter(value)
+    except TypeError:
+        raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted)) from None
+    begun, nested = len(numbers), False
+    for item in items:
+        if type(item) is float or type(item) is int and kind in _LIMITS or not hasattr(item, "__iter__") or isinstance(item, (str, bytes)):
+            numbers.append(_number(item, kind))
+            continue
+        if hasattr(item, "tolist"):
+            item = item.tolist()
+            if not hasattr(item, "__iter__"):
+                numbers.append(_number(item, kind))
+                continue
+        if isinstance(item, (dict, set, frozenset)) or depth > 3:
+            raise TypeError("%s, an array of shape %s is wanted" % (_given(item), wanted))
+        if not nested and len(numbers) > begun:
+            raise ValueError("numbers and rows are mixed, an array of shape %s is wanted" % wanted)
+        nested = True
+        _rows(item, numbers, kind, width, wanted, depth + 1)
+    found = len(numbers) - begun
+    if depth and not nested and found != width:
+        raise ValueError("a row has the shape (%d,), an array of shape %s is wanted" % (found, wanted))
+
+
+def _array_of(value, kind, where, width=1, count=None, null=False):
+    """An array that is an argument of a call."""
+    try:
+        return _array(value, kind, width, count, null)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise _named(error, where) from None
 
 
 def _view(pointer, kind, shape, owner, const):
@@ -399,82 +855,235 @@ def _view(pointer, kind, shape, owner, const):
     return view.toreadonly() if const else view
 
 
-def _functions(struct):
-    """The Python functions of a struct, by their path in it; none of a struct that C has made."""
-    return getattr(struct, "_functions", None) or {}
+def _plain(value):
+    """A value as Python's own kinds: structs become dicts, arrays lists."""
+    if isinstance(value, (Vec3, Quat)):
+        return tuple(value)
+    if isinstance(value, Struct):
+        return value.to_dict()
+    if isinstance(value, memoryview):
+        return value.tolist()
+    if isinstance(value, ctypes.Array):
+        return [_plain(item) for item in value]
+    return value
+
+
+def _array_bytes(field, kind, struct):
+    """The bytes of an array behind a pointer; None of null."""
+    pointer = getattr(struct, "_" + field)
+    if not pointer:
+        return None
+    if kind.one:
+        return [pointer[0]]
+    count = kind.width*next((getattr(struct, length) for length, arrays in struct.counts.items()
+                             if field in [array for array, _ in arrays]), 0)
+    if issubclass(kind.kind, Struct):
+        return [pointer[i] for i in range(count)]
+    return ctypes.string_at(pointer, count*ctypes.sizeof(kind.kind))
+
+
+def _struct_from(kind, data, arrays, functions, raw):
+    """A struct that was pickled."""
+    struct = kind.from_buffer_copy(data)
+    for name, value in arrays.items():
+        item = kind.kinds[name].kind
+        if isinstance(value, list):
+            array = (item*len(value))(*value)
+        else:
+            array = (item*(len(value)//ctypes.sizeof(item))).from_buffer_copy(value)
+        _set(struct, "_" + name, ctypes.cast(array, kind.kinds[name].c))
+        struct.__dict__.setdefault("_extra", []).append(array)
+    for name, value in raw.items():
+        _set(struct, name, value)
+    if functions:
+        struct.__dict__["_functions"] = functions
+    return struct
 
 
 class Struct(ctypes.Structure):
     """A struct of dem.h. Fields are keyword arguments; fields that are not given are 0."""
-    __slots__ = ("_functions", "_of", "_extra")
-    rows, c_name, counts, kinds = [], "", {}, {}
+    rows, c_name, counts, kinds, counted, lengths, numbers = [], "", {}, {}, (), {}, False
+    # _functions: Python functions, by their path; _of: the world; _extra: what must live as long; _ids: ids that it holds;
+    # _call: the call that changes what this copy shows
+    _functions = _of = _extra = _ids = _call = None
 
     def __init__(self, *values, **fields):
+        if len(values) > len(self.rows) or values and self.numbers and len(values) < len(self.rows):
+            raise ArgumentTypeError("%s: %d values are given, %s%d are wanted (%s)" % (
+                type(self).__name__, len(values), "" if self.numbers else "at most ", len(self.rows), ", ".join(self.kinds)))
+        if values and self.numbers and not fields:
+            super().__init__(*values)
+            return
         super().__init__()
-        self._functions, self._of, self._extra = {}, None, None
-        if len(values) > len(self.rows):
-            raise TypeError("%s has %d fields; %d values are given" % (type(self).__name__, len(self.rows), len(values)))
         if values or fields:
+            both = set(fields).intersection(list(self.kinds)[:len(values)])
+            if both:
+                raise ArgumentTypeError("%s: %s is given twice" % (type(self).__name__, both.pop()))
             self._put(dict(zip(self.kinds, values), **fields))
 
     def _put(self, fields):
-        for name, value in fields.items():
+        for name in fields:
             if name not in self.kinds:
-                raise TypeError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+                raise ArgumentTypeError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+        sizes, pointers = {}, False
+        for name, value in fields.items():
+            if name in self.counts:
+                continue
+            kind = self.kinds[name]
+            if self._ids or self._functions:                # of the value before
+                self.__dict__["_ids"] = {inner: item for inner, item in (self._ids or {}).items() if inner.partition(
+                    ".")[0].partition("[")[0] != name}
+                self.__dict__["_functions"] = {path: item for path, item in (self._functions or {}).items() if path[0] != name}
+            if type(value) is float and kind is ctypes.c_double:
+                _set(self, name, value)
+                continue
             if name == "cylinder" and value in ("x", "y", "z"):
                 value = ord(value)                          # dem.h has the axis as a character
+            if name in _WORDS and isinstance(value, (list, tuple)) and all(isinstance(word, str) for word in value):
+                value = " ".join(value)
             try:
-                ctypes.Structure.__setattr__(self, name, _convert(value, self.kinds[name]))
+                if isinstance(kind, View):
+                    if isinstance(value, ctypes._Pointer):  # nobody knows its length
+                        pointers = True
+                        _set(self, "_" + name, value)
+                    elif value is not None and kind.one:
+                        _set(self, "_" + name, ctypes.pointer(kind.kind._made(value)))
+                    elif value is not None:
+                        array = [value] if isinstance(value, kind.kind) else value
+                        array = _array(array, kind.kind, kind.width)
+                        sizes[name] = len(array)//kind.width
+                        _set(self, "_" + name, ctypes.cast(array, kind.c))
+                    else:
+                        _set(self, "_" + name, None)
+                elif name in self.counted:
+                    array = _convert(value, kind, False)
+                    size = 0 if value is None else len(value) if _many(value) else 1
+                    if size:
+                        sizes[name] = size
+                    _set(self, name, array)
+                elif isinstance(kind, Function) or isinstance(kind, Choices) or kind is str or isinstance(kind, Text) or (
+                        isinstance(kind, type) and issubclass(kind, enum.IntEnum)):
+                    _set(self, name, value)                 # a property
+                else:
+                    _set(self, name, _convert(value, kind))
             except (TypeError, ValueError, OverflowError) as error:
-                raise type(error)("%s.%s: %s" % (type(self).__name__, name, error)) from None
-            for path, item in [((name,), value)] if isinstance(value, Struct) else [
-                    ((name, i), item) for i, item in enumerate(value) if isinstance(item, Struct)] if isinstance(value, (list, tuple)) else []:
-                for inner, function in _functions(item).items():        # C copies structs without their Python functions
-                    self._functions[path + inner] = function
-        for name, (field, width) in self.counts.items():    # a length follows from its array, unless it is given
-            if field in fields and fields[field] is not None:
-                given = fields[field]
-                if isinstance(given, ctypes._Pointer):      # nobody knows its length
-                    continue
-                size = len(_array(given, self.kinds[field].kind)) if isinstance(self.kinds[field], View) else len(
-                    given) if hasattr(given, "__len__") else 1
-                if fields.get(name) and fields[name]*width > size:
-                    raise ValueError("%s.%s is %d, but %s has %d numbers" % (type(self).__name__, name, fields[name], field, size))
-                if not fields.get(name):
-                    setattr(self, name, size//width)
+                raise _named(error, "%s.%s" % (type(self).__name__, name)) from None
+            if isinstance(value, Struct):
+                self._keep(name, value, (name,))
+            elif isinstance(value, (list, tuple)):
+                for i, item in enumerate(value):
+                    if isinstance(item, Struct):
+                        self._keep("%s[%d]" % (name, i), item, (name, i))
+        for length, arrays in self.counts.items():          # a length follows from its arrays
+            self._length(length, arrays, sizes, fields, pointers)
+
+    def _length(self, length, arrays, sizes, fields, pointers):
+        """Sets the length that arrays have in common."""
+        given = fields.get(length)
+        if given is not None:
+            try:
+                given = _number(given, ctypes.c_int)
+            except (TypeError, OverflowError) as error:
+                raise _named(error, "%s.%s" % (type(self).__name__, length)) from None
+        found = [field for field, _ in arrays if field in sizes]
+        if found:
+            count = sizes[found[0]]
+            others = {field: size for field, size in sizes.items() if field in found and size != count}
+            for field, _ in arrays:                         # arrays that are there already
+                if field not in fields and getattr(self, "_" + field, None) and getattr(self, length) != count:
+                    others[field] = getattr(self, length)
+            if others:
+                field, size = others.popitem()
+                raise ArgumentError("%s.%s has %d element%s, %s has %d; both must have as many" % (
+                    type(self).__name__, field, size, "s"*(size != 1), found[0], count))
+            if given and given != count:
+                raise ArgumentError("%s.%s is %d, but %s has %d element%s; leave it out, it follows from the array" % (
+                    type(self).__name__, length, given, found[0], count, "s"*(count != 1)))
+            _set(self, length, count)
+        elif pointers and given is not None:
+            _set(self, length, given)
+        elif given:
+            if given != getattr(self, length):
+                raise ArgumentError("%s.%s is %d, but %s has no elements; leave it out, it follows from the array" % (
+                    type(self).__name__, length, given, arrays[0][0]))
+        elif any(field in fields for field, _ in arrays[:1]) and not pointers:
+            _set(self, length, 0)
+
+    def _keep(self, name, value, path):
+        """Keeps what C does not copy with a struct: its Python functions, and the worlds of its ids."""
+        if value._functions:
+            functions = dict(self._functions or {})
+            functions.update((path + inner, function) for inner, function in value._functions.items())
+            self.__dict__["_functions"] = functions
+        if isinstance(value, Id):
+            if value._of is not None:
+                self.__dict__["_ids"] = dict(self._ids or {}, **{name: value})
+        elif value._ids:
+            self.__dict__["_ids"] = dict(self._ids or {}, **{"%s.%s" % (name, inner): item for inner, item in value._ids.items()})
 
     def __setattr__(self, name, value):
-        kind = type(self).kinds.get(name)
-        if kind in _NUMBERS:
+        kind = self.kinds.get(name)
+        if kind is None:
+            if name[:1] == "_":
+                _set(self, name, value)
+                return
+            raise FieldError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+        base = self
+        while base is not None:
+            if getattr(base, "_call", None):
+                raise FieldError("%s.%s: this struct is a copy, whose change would have no effect; %s" % (
+                    type(self).__name__, name, base._call))
+            base = getattr(base, "_b_base_", None)
+        if kind is ctypes.c_double and type(value) is float:
+            _set(self, name, value)
+        elif kind in _NUMBERS and name not in self.counts:
             try:
                 value = _number(value, kind)
             except (TypeError, OverflowError) as error:
-                raise type(error)("%s.%s: %s" % (type(self).__name__, name, error)) from None
-        super().__setattr__(name, value)
+                raise _named(error, "%s.%s" % (type(self).__name__, name)) from None
+            _set(self, name, value)
+        else:
+            self._put({name: value})
+
+    def __delattr__(self, name):
+        raise FieldError("%s.%s: a field cannot be deleted" % (type(self).__name__, name))
 
     @classmethod
     def make(cls, value):
         """This struct from an instance, a sequence, a dict, or None (zeros)."""
+        return _struct_of(cls, value, cls.__name__ + ".make") if value is not None else cls()
+
+    @classmethod
+    def _made(cls, value):
         if isinstance(value, cls):
             return value
         if value is None:
             return cls()
         if isinstance(value, dict):
+            if not all(isinstance(name, str) for name in value):
+                raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
             return cls(**value)
         first = cls.rows[0][1]
+        nested = isinstance(first, type) and issubclass(first, Struct)
         if isinstance(value, Struct):
+            if not nested:
+                raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
             return cls(value)
-        value = tuple(value)
-        if isinstance(first, type) and issubclass(first, Struct) and len(value) == ctypes.sizeof(cls)//ctypes.sizeof(Real):
+        values = _items(value, "a %s, or %d numbers (%s)" % (cls.__name__, len(cls.rows), ", ".join(cls.kinds)) if cls.numbers else
+                        "a %s" % cls.__name__)
+        if nested and len(values) == ctypes.sizeof(cls)//ctypes.sizeof(Real) and not any(hasattr(v, "__len__") for v in values):
             size = ctypes.sizeof(first)//ctypes.sizeof(Real)
-            return cls(*[value[i:i + size] for i in range(0, len(value), size)])     # a box from six numbers
-        if len(value) != len(cls.rows) and isinstance(first, type) and issubclass(first, Struct):
-            return cls(value)
-        return cls(*value)
+            return cls(*[values[i:i + size] for i in range(0, len(values), size)])     # a box from six numbers
+        if cls.numbers and len(values) != len(cls.rows) or cls.whole and len(values) != len(cls.rows):
+            raise ValueError("%d numbers are given, %d are wanted%s" % (len(values), 6 if cls.whole else len(cls.rows), "" if cls.whole else
+                                                                       " (%s)" % ", ".join(cls.kinds)))
+        if len(values) != len(cls.rows) and nested:
+            return cls(values)
+        return cls(*values)
 
     @classmethod
     def from_param(cls, value):
-        return cls.make(value)
+        return cls._made(value)
 
     def __iter__(self):
         return (getattr(self, name) for name in self.kinds)
@@ -483,12 +1092,57 @@ class Struct(ctypes.Structure):
         return len(self.rows)
 
     def __getitem__(self, index):
-        return tuple(self)[index]
+        if isinstance(index, str):
+            if index not in self.kinds:
+                raise ArgumentError("%s has no field %r; it has %s" % (type(self).__name__, index, ", ".join(self.kinds)))
+            return getattr(self, index)
+        try:
+            return tuple(self)[index]
+        except TypeError:
+            raise ArgumentTypeError("%s[...]: %s, the number or the name of a field is wanted" % (
+                type(self).__name__, _given(index))) from None
+        except IndexError:
+            raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
+
+    def keys(self):
+        """The names of the fields: dict(struct) and pandas use them."""
+        return list(self.kinds)
+
+    def to_dict(self):
+        """The fields as a dict of Python's own kinds: numbers, texts, tuples and lists. Bare pointers are left out."""
+        return {name: _plain(getattr(self, name)) for name, kind in self.kinds.items() if not _raw(kind)}
 
     def __eq__(self, other):
-        return tuple(self) == tuple(other) if isinstance(other, (Struct, tuple, list)) else NotImplemented
+        if isinstance(other, Struct) and type(other) is not type(self) and not (self.numbers and other.numbers):
+            return False
+        if not isinstance(other, (Struct, tuple, list)):
+            return NotImplemented
+        mine, others = ([item for item, kind in zip(struct, self.kinds.values()) if not _raw(kind)] if isinstance(struct, Struct)
+                        else list(struct) for struct in (self, other))
+        return len(mine) == len(others) and all(_same(a, b) for a, b in zip(mine, others))
 
     __hash__ = None
+
+    def __reduce_ex__(self, _):
+        arrays = {name: data for name, data in ((name, _array_bytes(name, kind, self)) for name, kind in self.kinds.items()
+                                                if isinstance(kind, View)) if data is not None}
+        raw, c = {}, type(self).from_buffer_copy(self)      # pointers mean nothing elsewhere
+        for (name, kind), field in zip(self._fields_, self.kinds):
+            if isinstance(self.kinds[field], (View, Function)) or kind is ctypes.c_char_p or kind is ctypes.c_void_p or issubclass(
+                    kind, ctypes._Pointer):
+                if kind is ctypes.c_char_p and getattr(self, name) is not None:
+                    raw[name] = getattr(self, name)
+                ctypes.memset(ctypes.addressof(c) + getattr(type(self), name).offset, 0, ctypes.sizeof(kind))
+        return _struct_from, (type(self), bytes(c), arrays, dict(self._functions or {}), raw)
+
+    def __copy__(self):
+        copy = type(self).from_buffer_copy(self)            # its arrays are those of the original
+        copy.__dict__.update(_functions=dict(self._functions or {}), _of=self._of, _ids=self._ids, _extra=(self._extra, self._objects))
+        return copy
+
+    def __deepcopy__(self, memo):
+        make, arguments = self.__reduce_ex__(4)
+        return make(*arguments)
 
     def __repr__(self):
         shown = []
@@ -503,6 +1157,102 @@ class Struct(ctypes.Structure):
         return "%s(%s)" % (type(self).__name__, ", ".join(shown))
 
 
+Struct.whole = False            # a sequence must have all fields
+
+
+def _raw(kind):
+    """True of a pointer whose length nobody knows."""
+    return isinstance(kind, type) and issubclass(kind, ctypes._Pointer) or kind is ctypes.c_void_p
+
+
+def _same(a, b):
+    """Equality of two fields."""
+    if isinstance(a, ctypes.Array):
+        a = list(a)
+    if isinstance(b, ctypes.Array):
+        b = list(b)
+    if isinstance(a, list) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(map(_same, a, b))
+    try:
+        return bool(a == b)
+    except ValueError:          # arrays of numpy
+        return False
+
+
+class Numbers(Struct):
+    """A struct of real numbers, such as Vec3, which takes part in sums and products like an array of numpy."""
+
+    def __array__(self, dtype=None, copy=None):
+        import numpy
+        return numpy.array(tuple(self), dtype=dtype)
+
+    @staticmethod
+    def _arrays(value):
+        """A value with tuples in the places of structs of numbers."""
+        if isinstance(value, Numbers):
+            return value.__array__()
+        if isinstance(value, (list, tuple)):
+            return type(value)(map(Numbers._arrays, value))
+        return value
+
+    def __array_ufunc__(self, function, method, *inputs, **options):
+        return getattr(function, method)(*Numbers._arrays(inputs), **options)
+
+    def __array_function__(self, function, kinds, arguments, options):
+        return function(*Numbers._arrays(arguments), **options)
+
+    def _with_each(self, other, function, swap=False):
+        if isinstance(other, (int, float)) or not hasattr(other, "__len__") and hasattr(other, "__float__"):
+            other = (other,)*len(self)
+        elif not isinstance(other, (Numbers, tuple, list)) or len(other) != len(self):
+            return NotImplemented                           # an array of numpy answers itself
+        return type(self)(*[function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
+
+    def __add__(self, other):
+        return self._with_each(other, operator.add)
+
+    __radd__ = __add__
+
+    def __sub__(self, other):
+        return self._with_each(other, operator.sub)
+
+    def __rsub__(self, other):
+        return self._with_each(other, operator.sub, True)
+
+    def __mul__(self, other):
+        return self._with_each(other, operator.mul)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other):
+        return self._with_each(other, operator.truediv)
+
+    def __rtruediv__(self, other):
+        return self._with_each(other, operator.truediv, True)
+
+    def __neg__(self):
+        return type(self)(*[-a for a in self])
+
+    def __pos__(self):
+        return type(self)(*self)
+
+    def __abs__(self):
+        return math.sqrt(sum(a*a for a in self))
+
+    def dot(self, other):
+        """The scalar product with three (Quat: four) numbers."""
+        return sum(a*b for a, b in zip(self, type(self)._made(other)))
+
+
+class Vector(Numbers):
+    """What a Vec3 has beside its fields: v + w, 2*v, v/2, abs(v) (its length), v.dot(w), v.cross(w)."""
+
+    def cross(self, other):
+        """The vector product."""
+        (a, b, c), (x, y, z) = self, type(self)._made(other)
+        return type(self)(b*z - c*y, c*x - a*z, a*y - b*x)
+
+
 def _field(name, kind, doc):
     """A property for a field whose C value is not what Python users expect."""
     raw = "_" + name
@@ -510,8 +1260,10 @@ def _field(name, kind, doc):
     def get(self):
         value = getattr(self, raw)
         if isinstance(kind, Function):
-            return _functions(self).get((name,)) or (value if value else None)
+            return (self._functions or {}).get((name,)) or (value if value else None)
         if isinstance(kind, View):
+            if kind.one:
+                return value[0] if value else None
             shape = []
             for axis in kind.shape:
                 length = getattr(self, axis) if isinstance(axis, str) else axis
@@ -532,21 +1284,36 @@ def _field(name, kind, doc):
 
     def put(self, value):
         if isinstance(kind, Function):
-            if not hasattr(self, "_functions"):
-                raise TypeError("%s.%s: this struct is a part of another; make it with its function, then assign it" % (
-                    type(self).__name__, name))
-            self._functions.pop((name,), None)
+            if self._b_base_ is not None:
+                raise TypeError("this struct is a part of another; make it with its function, then assign it")
+            functions = dict(self._functions or {})
+            functions.pop((name,), None)
             if value is None:
-                setattr(self, raw, kind.c())
+                _set(self, raw, kind.c())
             elif isinstance(value, ctypes._CFuncPtr):       # a function compiled in C
-                setattr(self, raw, ctypes.cast(value, kind.c))
-            elif callable(value):
-                self._functions[name,] = value
+                _compiled(value)
+                _set(self, raw, ctypes.cast(value, kind.c))
+            elif callable(value) and not isinstance(value, type):
+                functions[name,] = value
             else:
-                raise TypeError("%s.%s: %r is no function" % (type(self).__name__, name, value))
+                raise TypeError("%s, a function is wanted" % _given(value))
+            self.__dict__["_functions"] = functions
         else:
-            setattr(self, raw, _convert(value, kind))
+            _set(self, raw, _convert(value, kind))
     return property(get, put, doc=doc)
+
+
+def _compiled(function):
+    """Refuses a function of a library that was compiled for another precision."""
+    for library in (getattr(function, "_objects", None) or {}).values():
+        if isinstance(library, ctypes.CDLL):
+            try:
+                size = ctypes.c_int.in_dll(library, "dempy_real_size").value
+            except ValueError:
+                continue
+            if size != ctypes.sizeof(Real):
+                raise ValueError("the library %s is compiled for reals of %d bytes, this process has %d; compile it again with "
+                                 "dem.compile" % (library._name, size, ctypes.sizeof(Real)))
 
 
 def _struct(cls):
@@ -554,6 +1321,8 @@ def _struct(cls):
     fields, docs = [], []
     cls._functions_ = {}
     for name, kind, doc in cls.rows:
+        if isinstance(kind, View) and not kind.shape and not kind.one:
+            kind.shape = tuple(length for length, arrays in cls.counts.items() if name in [array for array, _ in arrays])
         special = isinstance(kind, (View, Text, Function, Choices)) or kind is str or issubclass(kind, enum.IntEnum)
         c = ctypes.c_char_p if kind is str else _c(kind)
         fields.append(("_" + name if special else name, c))
@@ -564,6 +1333,9 @@ def _struct(cls):
         if doc:
             docs.append("%s: %s" % (name, doc))
     cls.kinds = {name: kind for name, kind, _ in cls.rows}
+    cls.counted = {field for arrays in cls.counts.values() for field, _ in arrays if not isinstance(cls.kinds[field], View)}
+    cls.numbers = issubclass(cls, Numbers)
+    cls.whole = cls.__name__ == "Box"
     cls._fields_ = fields
     if docs:
         cls.__doc__ = (cls.__doc__ or "") + "\n\n" + "\n".join(docs)
@@ -572,19 +1344,39 @@ def _struct(cls):
 
 class Id(Struct):
     """The id of an object of a world. Two ids are equal if they name the same object."""
-    __slots__ = ()
+
+    @classmethod
+    def _made(cls, value):
+        """An id from an id; None is the id 0, which names nothing."""
+        if type(value) is cls:
+            return value
+        if value is None:
+            return cls()
+        raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
+
+    def __setattr__(self, name, value):
+        if name[:1] != "_":
+            raise FieldError("%s.%s: an id does not change, and its object has %s" % (type(self).__name__, name, ", ".join(
+                word for word in dir(type(self)) if word[0] != "_" and word not in dir(Id))))
+        _set(self, name, value)
 
     def of(self, world):
         """The same id, as a part of another world: of a copy that a function of yours sees, or of a checkpoint."""
+        if not isinstance(world, WorldBase):
+            raise ArgumentTypeError("%s.of: world: %s, a World is wanted" % (type(self).__name__, _given(world)))
         copy = type(self).from_buffer_copy(self)
-        copy._functions, copy._of, copy._extra = {}, world, None
+        copy._of = world
         return copy
 
     @property
     def world(self):
-        if getattr(self, "_of", None) is None:
-            raise ValueError("this id belongs to no world yet; write id.of(world)")
+        """The world that it belongs to."""
+        if self._of is None:
+            raise ArgumentError("%r belongs to no world yet; write id.of(world)" % self)
         return self._of
+
+    def __reduce_ex__(self, _):
+        return _struct_from, (type(self), bytes(self), {}, {}, {})
 
     def __bool__(self):
         return any(bytes(self))
@@ -596,20 +1388,14 @@ class Id(Struct):
         return hash((type(self), bytes(self)))
 
 
-# ---- errors -------------------------------------------------------------------------------------
-
-class Error(Exception):
-    """A call of dem.h has failed. The text is the error message of dem.h: the function, what is wrong with the value,
-    the limit, the likely cause, the remedy. result: the dem.Result."""
-    result = None
-
+# ---- worlds -------------------------------------------------------------------------------------
 
 class _Context:
     """What the functions that a world calls share: the first exception, and the world."""
 
     def __init__(self, world):
-        self.raised, self.kept, self.go_on, self.memory, self.reals = None, {}, None, 0, 0
-        self.world_of = weakref.ref(world)
+        self.raised, self.kept, self.go_on, self.memory, self.vectors, self.reals = None, {}, None, 0, 0, 0
+        self.world_of, self.runs, self.ids, self.stop = weakref.ref(world), None, None, False
 
     def fail(self, error):
         if self.raised is None:
@@ -620,15 +1406,82 @@ class _Context:
         return world if world is not None and world._at == pointer else World._borrow(pointer, self)
 
 
+def _held(value):
+    """True if something holds an object beside the variable of the caller. A dict of the caller's variables, which debuggers
+    and World.close make, does not count."""
+    more = _refs(value) - _TWO
+    return more > 0 and more > sum(type(holder) is dict and "context" in holder and "function" in holder
+                                   for holder in gc.get_referrers(value))
+
+
+def _references():
+    value = object()
+    return _refs(value), (lambda value: _refs(value))(value)
+
+
+_ONE, _TWO = _references()
+
+
+def _kept(name):
+    """The exception of a function that keeps an argument whose memory dem.h uses again."""
+    return ArgumentError("your function keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
+                         "copy.copy(%s), or the numbers that you need" % (name, name))
+
+
+def _returned(value, kind):
+    """The exception of a function that returns what it must not."""
+    return ArgumentTypeError("your function (%s) returned %s, but what it returns has no effect; it sets the fields of its "
+                             "arguments and returns nothing" % (kind, _given(value).replace(" is given", "")))
+
+
+def _real_from(value, kind):
+    """A number that a function of yours returned."""
+    try:
+        return _number(value, ctypes.c_double)
+    except TypeError as error:
+        raise ArgumentTypeError("your function (%s) must return a number: %s" % (
+            kind, str(error).replace("is given", "was returned"))) from None
+
+
 class Handle:
     """A world, a replay or slabs: memory that the library owns."""
     _at = _context = None
+
+    @property
+    def _c(self):
+        """The pointer, for a call."""
+        at = self._at
+        if at is None:
+            raise ArgumentError("%s.%s: this %s is closed" % (type(self).__name__, sys._getframe(1).f_code.co_name,
+                                                             type(self).__name__.lower()))
+        return at
+
+    def __setattr__(self, name, value):
+        found, kind = getattr(type(self), name, None), type(self).__name__
+        if name[:1] == "_" or isinstance(found, property) and found.fset:
+            object.__setattr__(self, name, value)
+        elif hasattr(type(self), name + "_set"):
+            raise FieldError("%s.%s: an assignment has no effect; call %s_set" % (kind, name, name))
+        elif isinstance(self, WorldBase) and name in WorldDesc.kinds:
+            raise FieldError("%s.%s is fixed when the world is made; write dem.World(%s=...)" % (kind, name, name))
+        elif found is not None:
+            raise FieldError("%s.%s cannot be set; dem.h computes it" % (kind, name) if isinstance(found, property) else
+                             "%s.%s is a method; call it" % (kind, name))
+        else:
+            raise FieldError("%s has no attribute %r that can be set; keep what is yours in a variable of your own" % (kind, name))
 
     def _text(self):
         return ""
 
     def _raise(self, kind):
-        raise kind(self._text() or "no message")
+        text = self._text() or "no message"
+        if kind is Error:                                   # a null id
+            kind = (MemoryError if ": out of memory" in text else FileError if ": cannot write" in text or ": cannot read" in text
+                    else ArgumentError)
+        runs = self._context.runs if self._context else None
+        if runs and runs != threading.get_ident() and "called from a function that" in text:
+            text = "%s: another thread runs this world; one thread at a time may use a world" % text.partition(":")[0]
+        raise kind(text)
 
     def _ok(self, result):
         """Raises the exception of a function of yours, or that of a result other than OK."""
@@ -643,20 +1496,34 @@ class Handle:
     def _run(self, function, *arguments):
         """Calls a function that takes long. Ctrl-C meanwhile is noted: a progress function then ends the run, and the
         caller gets KeyboardInterrupt."""
-        before = _signal.getsignal(_signal.SIGINT) if threading.get_ident() == threading.main_thread().ident else None
-        if not callable(before):
-            return function(*arguments)
-
-        def note(number, frame):
-            try:
-                before(number, frame)
-            except BaseException as error:
-                self._context.fail(error)
-        _signal.signal(_signal.SIGINT, note)
+        context, thread = self._context, threading.get_ident()
+        if context.runs and context.runs != thread:
+            raise ArgumentError("%s.%s: another thread runs this world; one thread at a time may use a world" % (
+                type(self).__name__, sys._getframe(1).f_code.co_name))
+        outer, context.runs, context.stop = context.runs, thread, False
+        before = _signal.getsignal(_signal.SIGINT) if thread == threading.main_thread().ident else None
+        _RUNNING.add(context)
         try:
-            return function(*arguments)
+            if not callable(before):
+                return function(*arguments)
+
+            def note(number, frame):
+                try:
+                    before(number, frame)
+                except BaseException as error:
+                    context.fail(error)
+            _signal.signal(_signal.SIGINT, note)
+            try:
+                return function(*arguments)
+            finally:
+                _signal.signal(_signal.SIGINT, before)
         finally:
-            _signal.signal(_signal.SIGINT, before)
+            context.runs = outer
+            if not outer:
+                _RUNNING.discard(context)
+            if context.stop:                                # Ctrl-C, and another thread is the main thread
+                context.stop = False
+                context.fail(KeyboardInterrupt())
 
     def _id(self, value):
         self._ok(0)
@@ -691,10 +1558,14 @@ class Handle:
 
     def _bound(self, struct, key=None):
         """A struct whose Python functions have become C functions, which live as long as the world."""
-        if not _functions(struct):
+        for name, item in (struct._ids or {}).items():
+            if item._of._at != self._at:
+                raise ArgumentError("%s.%s: %s: %r belongs to another world%s" % (
+                    type(self).__name__, sys._getframe(1).f_code.co_name, name, item, "" if item._of._at else ", which is closed"))
+        if not struct._functions:
             return struct
         copy = type(struct).from_buffer_copy(struct)
-        copy._functions, copy._of, copy._extra = {}, None, struct
+        copy._extra = struct
         made = []
         for path, function in struct._functions.items():
             target = copy
@@ -711,6 +1582,9 @@ class Handle:
         """A C function of a Python function, for one call."""
         if function is None:
             return kind.c()
+        if not callable(function) or isinstance(function, type):
+            raise ArgumentTypeError("%s.%s: %s, a function is wanted" % (type(self).__name__, sys._getframe(1).f_code.co_name,
+                                                                        _given(function)))
         if function is _go_on:
             if not self._context.go_on:
                 self._context.go_on = kind.wrap(_go_on, self._context, None)
@@ -719,13 +1593,16 @@ class Handle:
             return ctypes.cast(function, kind.c)
         return kind.wrap(function, self._context, None)
 
-    def _with(self, struct):
-        """Ties a struct that the library has filled to the world, whose memory its views keep alive."""
-        struct._of, struct._extra = self, self._memory
+    def _with(self, struct, call="dem.h computes it"):
+        """Ties a struct that the library has filled to the world, whose memory its views keep alive. call: what changes
+        the values that it shows."""
+        struct.__dict__.update(_of=self, _extra=self._memory, _call=call)
         return struct
 
     def _print(self, function, out, *arguments):
         """Calls a function that prints to a FILE, and prints its text to `out` (sys.stdout)."""
+        if out is not None and not hasattr(out, "write"):
+            raise ArgumentTypeError("%s: out: %s, a file of Python is wanted" % (sys._getframe(1).f_code.co_name, _given(out)))
         libc = ctypes.CDLL(None) if os.name == "posix" else ctypes.cdll.ucrtbase
         libc.tmpfile.restype = ctypes.c_void_p
         file = ctypes.c_void_p(libc.tmpfile())
@@ -746,7 +1623,7 @@ class Handle:
     def _taken(self, struct, free):
         """A copy of a struct in memory of Python; frees the memory of the library."""
         copy = type(struct).from_buffer_copy(struct)
-        copy._functions, copy._of, copy._extra = {}, None, []
+        copy._extra = []
         for name, kind in struct.kinds.items():
             pointer = getattr(struct, "_" + name) if isinstance(kind, View) else None
             if pointer:
@@ -758,12 +1635,26 @@ class Handle:
         return copy
 
     def __reduce_ex__(self, _):
-        raise TypeError("a %s owns memory of dem.h and cannot be copied; write and read a checkpoint" % type(self).__name__)
+        raise ArgumentTypeError("a %s owns memory of dem.h and cannot be copied or pickled; write and read a checkpoint"
+                                % type(self).__name__)
 
     def close(self):
         """Ends it and frees its memory; further calls raise an error. Leaving a `with` block does the same."""
         if self._at is not None:
+            if self._context and self._context.runs or self._called():
+                raise ArgumentError("%s.close: a function of yours that dem.h calls, or another thread, cannot close what runs; "
+                                    "return true from a progress function to stop a run" % type(self).__name__)
             self._free()
+
+    def _called(self):
+        """True inside of a function that dem.h calls for this world."""
+        frame = sys._getframe(1)
+        while frame is not None:
+            if frame.f_code.co_name == "call" and frame.f_code.co_filename == __file__ and frame.f_locals.get(
+                    "context") is self._context is not None:
+                return True
+            frame = frame.f_back
+        return False
 
     def __enter__(self):
         return self
@@ -773,7 +1664,8 @@ class Handle:
 
     def __del__(self):
         try:
-            self.close()
+            if self._at is not None:
+                self._free()
         except Exception:
             pass
 
@@ -818,6 +1710,7 @@ class WorldBase(Handle):
 
     def _create(self, desc):
         self._context = _Context(self)
+        desc._functions = dict(desc._functions or {})
         functions = {path[0] for path in desc._functions}
         if functions & {"law", "law_rate", "force", "body_force", "body_reals_fn"} and not desc.threads:
             desc.threads = 1                        # Python runs one function at a time
@@ -825,11 +1718,17 @@ class WorldBase(Handle):
             force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
 
             def both(body, id, time, sum, torque):
-                sum.x, sum.y, sum.z = force(body.position, body.velocity, body.radius, body.mass, time)
+                made = force(body.position, body.velocity, body.radius, body.mass, time)
+                try:
+                    sum.x, sum.y, sum.z = made
+                except (TypeError, ValueError) as error:
+                    raise ArgumentTypeError("your function (force) must return three numbers: %s" % _given(made).replace(
+                        "is given", "was returned")) from error
                 if whole:
                     whole(body, id, time, sum, torque)
             desc._functions["body_force",] = both
-        self._context.memory, self._context.reals = desc.law_memory, len((desc.body_reals or "").split())
+        self._context.memory, self._context.vectors = desc.law_memory, desc.law_vectors
+        self._context.reals = len((desc.body_reals or "").split())
         bound = self._bound(desc, "desc")
         at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
         if not at:
@@ -846,6 +1745,43 @@ class WorldBase(Handle):
     def _text(self):
         return (_lib.dem_world_error_get(self._at) or b"").decode(errors="replace")
 
+    @property
+    def gravity(self):
+        """The acceleration of gravity, m/s2. An assignment calls gravity_set."""
+        return self.desc.gravity
+
+    @gravity.setter
+    def gravity(self, value):
+        self.gravity_set(value)
+
+    @property
+    def dt(self):
+        """The time step in use, s; 0 before the first step if dem.h chooses it. An assignment calls dt_set."""
+        return self.desc.dt
+
+    @dt.setter
+    def dt(self, value):
+        self.dt_set(value)
+
+    @property
+    def bodies(self):
+        """The arrays of all bodies, by the order of their slots: the order of adding, as long as none is removed. See
+        Rows."""
+        self._c
+        return Rows(self)
+
+    def __len__(self):
+        return self.bodies.count
+
+    def __bool__(self):
+        return True
+
+    def __repr__(self):
+        if self._at is None:
+            return "<World, closed>"
+        shown = self.body_counts
+        return "<World at %.6g s: %d bodies, step %d>" % (self.time, shown.present, self.steps)
+
     def _free(self):
         try:
             results = [self._memory.complete(film) for film in list(self._memory.films)]
@@ -859,12 +1795,17 @@ class ReplayBase(Handle):
     """What a Replay has beside the functions of dem.h. It is recorded until it or its world is closed."""
 
     def __init__(self, at, world, path):
-        self._film, self._world, self._context, self._memory, self.path = _Film(at), world, world._context, world._memory, path
+        self._film, self._world, self._context, self._memory, self._path = _Film(at), world, world._context, world._memory, path
         self._memory.films.add(self._film)
 
     @property
     def _at(self):
         return self._film.at
+
+    @property
+    def path(self):
+        """The path of the file."""
+        return self._path
 
     def __del__(self):
         pass                                        # the world goes on recording
@@ -896,53 +1837,294 @@ class SlabsBase(Handle):
 
 
 def progress_print(world, done, seconds_left):
-    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print)."""
-    world._print(_lib.dem_progress_print, sys.stderr, world._at, done, seconds_left)
+    """Prints the progress of a run to sys.stderr, a line for every tenth of the run: world.run(1, dem.progress_print). In a
+    notebook it rewrites one line."""
+    if not isinstance(world, WorldBase):
+        raise ArgumentTypeError("dem.progress_print: world: %s, a World is wanted" % _given(world))
+    if "ipykernel" not in sys.modules:
+        world._print(_lib.dem_progress_print, sys.stderr, world._c, done, seconds_left)
+        return
+    text = io.StringIO()
+    world._print(_lib.dem_progress_print, text, world._c, done, seconds_left)
+    if text.getvalue().strip():                             # it prints a line for every tenth
+        print("\r" + " ".join(text.getvalue().split("\n")).strip().ljust(100), end="\n" if done >= 1 else "", file=sys.stderr, flush=True)
+
+
+_RUNNING = set()                # contexts of the worlds that run
+
+
+def _interrupted(number, frame):
+    """The handler of Ctrl-C: ends the runs of all threads, then does what Python does."""
+    for context in list(_RUNNING):
+        context.stop = True
+    signal.default_int_handler(number, frame)
+
+
+if threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    signal.signal(signal.SIGINT, _interrupted)
 
 
 def _go_on(world, done, seconds_left):
     """The progress function of runs that are given none: lets Python handle Ctrl-C."""
 
 
+@functools.lru_cache(None)
+def _history(count, vectors):
+    """The type of a contact history: `vectors` of its leading triples are vectors."""
+    return type("History", (ctypes.Array,), {"_type_": Real, "_length_": count, "vectors": vectors, "__doc__": "A contact history."})
+
+
 def tail(memory, first):
     """The numbers of a contact history from number `first` on, for built-in laws that follow another one."""
-    part = (Real*(len(memory) - first)).from_address(ctypes.addressof(memory) + first*ctypes.sizeof(Real))
+    if not isinstance(memory, ctypes.Array) or memory._type_ is not Real:
+        raise ArgumentTypeError("dem.tail: memory: %s, the contact history that a law receives is wanted" % _given(memory))
+    try:
+        first = _number(first, ctypes.c_int)
+    except (TypeError, OverflowError) as error:
+        raise _named(error, "dem.tail: first") from None
+    if not 0 <= first <= len(memory):
+        raise ArgumentError("dem.tail: first: %d is given, must be from 0 to %d, the numbers of this contact history" % (
+            first, len(memory)))
+    kind = _history(len(memory) - first, max(0, getattr(memory, "vectors", 5) - (first + 2)//3))
+    part = kind.from_address(ctypes.addressof(memory) + first*ctypes.sizeof(Real))
     part.owner = memory
     return part
+
+
+class Rows:
+    """The arrays of all bodies of a world. Row i belongs to the body world.bodies[i] in all of them, and keeps it while the
+    world runs: rows are in the order of the slots of bodies, which is the order of adding. A body that is added after
+    another one was removed may take its slot, and then its place.
+
+    Each use of an array is a copy of what the world has then, read-only: positions (N x 4: x, y, z, radius, m), velocities
+    (N x 4: x, y, z, 0, m/s), spins (rad/s), forces (N, without gravity), torques (N m), masses (kg), slots, materials,
+    orientations (N x 4: w, x, y, z), shapes, reals (N x real_count), rates, groups. world.bodies_memory has the arrays of
+    dem.h without a copy, in an order that changes while the world runs.
+
+    An assignment sets all rows: world.bodies.velocities = array of shape (N, 3); so do positions and spins."""
+    __slots__ = ("_world",)
+
+    def __init__(self, world):
+        object.__setattr__(self, "_world", world)
+
+    def _struct(self):
+        return _lib.dem_bodies_get(self._world._c)
+
+    @property
+    def count(self):
+        """The number of bodies."""
+        return self._struct().count
+
+    @property
+    def real_count(self):
+        """Numbers per body (World(body_reals=...))."""
+        return self._struct().real_count
+
+    def _get(self, name):
+        world, kind = self._world, Bodies.kinds[name]
+        found = _lib.dem_bodies_get(world._c)
+        count = found.count
+        if name == "groups":
+            pointer, item, shape = found.groups, ctypes.c_uint32, [count]
+        else:
+            pointer, item = getattr(found, "_" + name), kind.kind
+            shape = [count if axis == "count" else found.real_count if axis == "real_count" else axis for axis in kind.shape]
+        if not pointer:
+            return None
+        width = shape[1] if len(shape) > 1 else 1
+        array = (item*(count*width))()
+        if count:
+            if "dempy_rows" in _lib.__dict__:
+                result = _lib.dempy_rows(world._at, getattr(Bodies, name if name == "groups" else "_" + name).offset,
+                                         width*ctypes.sizeof(item), count, ctypes.addressof(array))
+                if result:
+                    raise MemoryError("World.bodies.%s: out of memory" % name)
+            else:
+                rows = sorted(range(count), key=found.slots.__getitem__)
+                for i, row in enumerate(rows):
+                    array[width*i:width*i + width] = pointer[width*row:width*row + width]
+        if not count:
+            return memoryview(array).cast("B").cast(item._type_).toreadonly()
+        return memoryview(array).cast("B").cast(item._type_, shape).toreadonly()
+
+    def _all(self):
+        """The ids of all bodies."""
+        world, context = self._world, self._world._context
+        counts = _lib.dem_body_counts_get(world._c)
+        key = world._at, bytes(counts)
+        if context.ids is None or context.ids[0] != key:
+            count = self.count
+            ids = (Body*count)()
+            if count:
+                if "dempy_ids" in _lib.__dict__:
+                    if _lib.dempy_ids(world._at, count, ctypes.addressof(ids)):
+                        raise MemoryError("World.bodies: out of memory")
+                else:
+                    slots = self._struct().slots
+                    for i, row in enumerate(sorted(range(count), key=slots.__getitem__)):
+                        ids[i] = _lib.dem_body_id_get(world._at, row)
+            context.ids = key, ids
+        return context.ids[1]
+
+    def __len__(self):
+        return self.count
+
+    def __getitem__(self, index):
+        ids = self._all()
+        if isinstance(index, slice):
+            return [Body.from_buffer_copy(item).of(self._world) for item in ids[index]]
+        try:
+            return ids[index].of(self._world)
+        except TypeError:
+            raise ArgumentTypeError("World.bodies: %s, the number of a body is wanted" % _given(index)) from None
+        except IndexError:
+            raise NoSuchError("World.bodies: %s is given, the world has %d bodies" % (index, len(ids))) from None
+
+    def __iter__(self):
+        return iter(self[:])
+
+    def to_dict(self):
+        """Columns that pandas.DataFrame takes: x, y, z, radius, vx, vy, vz, wx, wy, wz, fx, fy, fz, mass, material, and the
+        numbers of bodies by their names."""
+        columns = {}
+        for name, letters in (("positions", "x y z radius"), ("velocities", "vx vy vz"), ("spins", "wx wy wz"), ("forces", "fx fy fz")):
+            rows = self._get(name).tolist() if self.count else []
+            for i, letter in enumerate(letters.split()):
+                columns[letter] = [row[i] for row in rows]
+        columns["mass"], columns["material"] = self._get("masses").tolist(), self._get("materials").tolist()
+        names = (self._world.desc.body_reals or "").split()
+        rows = self._get("reals").tolist() if names and self.count else []
+        columns.update((name, [row[i] for row in rows]) for i, name in enumerate(names))
+        return columns
+
+    def __setattr__(self, name, value):
+        if name not in ("positions", "velocities", "spins"):
+            raise FieldError("World.bodies.%s cannot be set; positions, velocities and spins can" % name)
+        ids = self._all()
+        array = _array_of(value, Real, "World.bodies.%s" % name, 3, len(ids))
+        if "dempy_put" in _lib.__dict__:
+            self._world._ok(_lib.dempy_put(self._world._c, len(ids), ctypes.addressof(ids), *[
+                ctypes.addressof(array) if name == field else None for field in ("positions", "velocities", "spins")]))
+        else:
+            for i, body in enumerate(ids):
+                body.of(self._world).set(**{{"positions": "position", "velocities": "velocity", "spins": "spin"}[name]:
+                                            array[3*i:3*i + 3]})
+
+    def __repr__(self):
+        return "<%d bodies: %s>" % (self.count, ", ".join(name for name in Bodies.kinds if name not in ("count", "real_count")))
+
+
+class Structs:
+    """Structs that dem.h has filled, such as world.contacts: a sequence, which numpy.asarray takes as a structured array and
+    to_dict() as columns."""
+
+    def __init__(self, array):
+        self._array = array
+
+    def __len__(self):
+        return len(self._array)
+
+    def __getitem__(self, index):
+        try:
+            return self._array[index]
+        except TypeError:
+            raise ArgumentTypeError("%s, the number of an element is wanted" % _given(index)) from None
+        except IndexError:
+            raise NoSuchError("%s is given, there are %d elements" % (index, len(self._array))) from None
+
+    def __array__(self, dtype=None, copy=None):
+        import numpy
+        kind = numpy.dtype(self._array._type_)
+        array = numpy.frombuffer(self._array, kind) if len(self._array) else numpy.zeros(0, kind)
+        return array if dtype is None or dtype == kind else array.astype(dtype)
+
+    def to_dict(self):
+        """Columns that pandas.DataFrame takes: a list for each number, such as a, b, point_x, normal_z, overlap."""
+        columns = {}
+
+        def add(kind, offset, path):
+            for (raw, c), name in zip(kind._fields_, kind.kinds):
+                at = offset + getattr(kind, raw).offset
+                if isinstance(c, type) and issubclass(c, Struct):
+                    add(c, at, path + [name])
+                elif c in _NUMBERS:
+                    columns["_".join(path + [name])] = [c.from_buffer(self._array, at + i*size).value for i in range(len(self))]
+        size = ctypes.sizeof(self._array._type_)
+        add(self._array._type_, 0, [])
+        return columns
+
+    def __repr__(self):
+        return "<%d %s>" % (len(self), self._array._type_.__name__)
+
+
+def _row_property(name, doc):
+    return property(lambda self: self._get(name), lambda self, value: self.__setattr__(name, value), doc=doc)
+
+
+def compile(source, flags=()):
+    """Compiles C functions, such as a contact law, and returns the library: World(law=dem.compile(text).sticky).
+
+    source: the text, or a path that ends with .c. The header dem.h of this module is found by #include "dem.h", and the
+    precision is that of this process. flags: more flags of the compiler. The library is kept beside that of dem.h; its name
+    contains a digest of the text, the flags, dem.h and the precision, so that a text that has changed is compiled again."""
+    if isinstance(flags, str):
+        flags = flags.split()
+    if not isinstance(source, (str, os.PathLike)):
+        raise ArgumentTypeError("dem.compile: source: %s, a text in C or a path is wanted" % _given(source))
+    if not isinstance(flags, (list, tuple)) or not all(isinstance(flag, str) for flag in flags):
+        raise ArgumentTypeError("dem.compile: flags: %s, a list of texts is wanted" % _given(flags))
+    if isinstance(source, os.PathLike) or "\n" not in source and source.endswith(".c"):
+        try:
+            with open(source) as file:
+                source = file.read()
+        except OSError as error:
+            raise FileError("dem.compile: cannot read %s: %s" % (os.fspath(source), error.strerror)) from None
+    header = _header()
+    with open(header, "rb") as file:
+        text = file.read()
+    whole = "#line 1 \"source\"\n" + source + "\n#line 1 \"dem.compile\"\n#include \"dem.h\"\nconst int dempy_real_size = (int)sizeof(dem_real);\n"
+    command = os.environ.get("CC", "cc").split() + os.environ.get("DEM_CFLAGS", "-O2").split()
+    command += ["-DDEM_REAL=float"] if Real is ctypes.c_float else []
+    command += ["-ffp-contract=off", "-shared", "-fPIC", "-I" + os.path.dirname(header)] + list(flags)
+    digest = hashlib.sha256(text + whole.encode() + "\n".join(command + [str(Real), sys.platform, platform.machine()]).encode())
+    folder = _folder(header, None)
+    path = os.path.join(folder, "law-%s-%s.so" % ("float" if Real is ctypes.c_float else "double", digest.hexdigest()[:16]))
+    if not os.path.exists(path):
+        if not shutil.which(command[0]):
+            raise FileError("dem.compile: the C compiler %r was not found; install one (Debian package gcc), or set CC" % command[0])
+        with tempfile.TemporaryDirectory(dir=folder) as work:
+            file_c, made = os.path.join(work, "law.c"), os.path.join(work, "law.so")
+            with open(file_c, "w") as file:
+                file.write(whole)
+            result = subprocess.run(command + [file_c, "-o", made, "-lm"], capture_output=True, text=True)
+            if result.returncode:
+                raise FormatError("dem.compile: the text does not compile: %s" % result.stderr.replace(file_c, "source")[:2000])
+            os.replace(made, path)
+    library = ctypes.CDLL(path)
+    size = ctypes.c_int.in_dll(library, "dempy_real_size").value
+    if size != ctypes.sizeof(Real):
+        raise ArgumentError("dem.compile: the text sets DEM_REAL to a type of %d bytes, this process has reals of %d; leave it out, "
+                            "or set the environment variable DEM_REAL before import dem" % (size, ctypes.sizeof(Real)))
+    return library
 
 
 class Page:
     """A replay file, which Jupyter shows inside a notebook: dem.Page("drum.html")."""
 
     def __init__(self, path, height=560):
+        path = os.fsdecode(_text_of(path, "dem.Page: path"))
         self.path, self.height = path, height
 
     def _repr_html_(self):
-        with open(self.path, encoding="utf-8") as file:
-            return '<iframe srcdoc="%s" width="100%%" height="%d" style="border:0"></iframe>' % (
-                html.escape(file.read()), self.height)
+        try:
+            with open(self.path, encoding="utf-8") as file:
+                text = file.read()
+        except OSError as error:
+            raise FileError("dem.Page: cannot read %s: %s" % (self.path, error.strerror)) from None
+        return '<iframe srcdoc="%s" width="100%%" height="%d" style="border:0"></iframe>' % (
+                html.escape(text), self.height)
 
-# ---- errors, one for each result ------------------------------------------------------------------
-
-
-class Result(enum.IntEnum):
-    """The result of a call. dem_world_error_get returns the message, dem_result_name_get the name."""
-    OK = 0
-    # a value is out of range, an id is invalid, or a call is not allowed here
-    ERROR_ARGUMENT = 1
-    # the allocator returned null
-    ERROR_MEMORY = 2
-    # a file cannot be opened, read, written or renamed
-    ERROR_FILE = 3
-    # the contents of a file are damaged, or of another format, version or scene
-    ERROR_FORMAT = 4
-    # the time step is too large for a contact, a spin, or the speed of a body or wall
-    ERROR_TIME_STEP = 5
-    # a state or force is not finite, an overlap is larger than a radius, or a motion gives an impossible pose
-    ERROR_UNSTABLE = 6
-    # a function of yours stopped the run, dem_world_settle ran out of time, or a step with impulses exceeded the
-    # tolerance (unsolved_stops)
-    ERROR_STOPPED = 7
+# ---- enums ---------------------------------------------------------------------------------------
 
 
 class NormalLaw(enum.IntEnum):
@@ -1301,71 +2483,9 @@ class EffectState(enum.IntEnum):
     ACTIVE = 2
 
 
-_ERRORS = {}
-
-
-class ArgumentError(Error, ValueError):
-    """a value is out of range, an id is invalid, or a call is not allowed here"""
-    result = Result.ERROR_ARGUMENT
-
-
-_ERRORS[1] = ArgumentError
-
-
-class MemoryError(Error, MemoryError):
-    """the allocator returned null"""
-    result = Result.ERROR_MEMORY
-
-
-_ERRORS[2] = MemoryError
-
-
-class FileError(Error, OSError):
-    """a file cannot be opened, read, written or renamed"""
-    result = Result.ERROR_FILE
-
-
-_ERRORS[3] = FileError
-
-
-class FormatError(Error, ValueError):
-    """the contents of a file are damaged, or of another format, version or scene"""
-    result = Result.ERROR_FORMAT
-
-
-_ERRORS[4] = FormatError
-
-
-class TimeStepError(Error):
-    """the time step is too large for a contact, a spin, or the speed of a body or wall"""
-    result = Result.ERROR_TIME_STEP
-
-
-_ERRORS[5] = TimeStepError
-
-
-class UnstableError(Error):
-    """a state or force is not finite, an overlap is larger than a radius, or a motion gives an impossible pose"""
-    result = Result.ERROR_UNSTABLE
-
-
-_ERRORS[6] = UnstableError
-
-
-class StoppedError(Error):
-    """a function of yours stopped the run, dem_world_settle ran out of time, or a step with impulses exceeded the
-    tolerance (unsolved_stops)
-    """
-    result = Result.ERROR_STOPPED
-
-
-_ERRORS[7] = StoppedError
-
-
 @_struct
-class Vec3(Struct):
+class Vec3(Vector):
     """The id of a vec3."""
-    __slots__ = ()
     c_name = 'dem_vec3'
     rows = [
         ('x', Real, ''),
@@ -1377,7 +2497,6 @@ class Vec3(Struct):
 @_struct
 class Box(Struct):
     """An axis-aligned box from corner lo to corner hi."""
-    __slots__ = ()
     c_name = 'dem_box'
     rows = [
         ('lo', Vec3, ''),
@@ -1386,9 +2505,8 @@ class Box(Struct):
 
 
 @_struct
-class Quat(Struct):
+class Quat(Numbers):
     """A unit quaternion that rotates vectors from the frame of a body into the world frame. w is the scalar part."""
-    __slots__ = ()
     c_name = 'dem_quat'
     rows = [
         ('w', Real, ''),
@@ -1403,7 +2521,6 @@ class Pose(Struct):
     """Position and motion of a rigid wall. A point with wall coordinates p is at position + rotation p in the world
     frame.
     """
-    __slots__ = ()
     c_name = 'dem_pose'
     rows = [
         ('position', Vec3, "m, of the origin of the wall's frame"),
@@ -1416,7 +2533,6 @@ class Pose(Struct):
 @_struct
 class Material(Id):
     """The id of a material."""
-    __slots__ = ()
     c_name = 'dem_material'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -1452,14 +2568,14 @@ class Material(Id):
             ('rolling_friction', rolling_friction), ('stiffness', stiffness), ('stiffness_ratio', stiffness_ratio),
             ('stiffness_unloading', stiffness_unloading), ('stiffness_adhesion', stiffness_adhesion),) if value is not
             None})
-        self.world._ok(_lib.dem_material_set(self.world._at, self, desc))
+        self.world._ok(_lib.dem_material_set(self.world._c, self, desc))
 
     @property
     def desc(self):
         """Writes the present values of a material to desc."""
         desc = MaterialDesc()
-        self.world._ok(_lib.dem_material_get(self.world._at, self, desc))
-        self.world._with(desc)
+        self.world._ok(_lib.dem_material_get(self.world._c, self, desc))
+        self.world._with(desc, 'call Material.set(...), which changes the fields that it is given')
         return desc
 
 
@@ -1468,7 +2584,6 @@ class Wall(Id):
     """Counts from 1. A wall added after a removal gets an id of a later generation, such as 262145: ids are names, not
     indices.
     """
-    __slots__ = ()
     c_name = 'dem_wall'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -1481,7 +2596,7 @@ class Wall(Id):
         finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
         """
         reals = (Real*max(self.world._context.reals, 1))()
-        self.world._ok(_lib.dem_wall_reals_get(self.world._at, self, ctypes.cast(reals, ctypes.POINTER(Real))))
+        self.world._ok(_lib.dem_wall_reals_get(self.world._c, self, ctypes.cast(reals, ctypes.POINTER(Real))))
         return reals
 
     def reals_set(self, reals):
@@ -1489,8 +2604,8 @@ class Wall(Id):
         dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
         finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
         """
-        reals = _array(reals, Real, self.world._context.reals, 'reals')
-        self.world._ok(_lib.dem_wall_reals_set(self.world._at, self, reals))
+        reals = _array_of(reals, Real, 'Wall.reals_set: reals', 1, self.world._context.reals)
+        self.world._ok(_lib.dem_wall_reals_set(self.world._c, self, reals))
 
     def motion_set(self, *, kind=0, velocity=None, point=None, axis=None, speed=0, amplitude=0, frequency=0,
             phase=0, start=0, function=None, user=None, ramp=0, load=0, area=0, travel=0, table=None, table_count=0,
@@ -1523,46 +2638,46 @@ class Wall(Id):
             frequency=frequency, phase=phase, start=start, function=function, user=user, ramp=ramp, load=load,
             area=area, travel=travel, table=table, table_count=table_count, table_repeats=table_repeats)
         motion = self.world._bound(motion, ('dem_wall_motion_set', self))
-        self.world._ok(_lib.dem_wall_motion_set(self.world._at, self, motion))
+        self.world._ok(_lib.dem_wall_motion_set(self.world._c, self, motion))
 
     def surface_velocity_set(self, velocity):
         """Sets the velocity of the surface of a wall (m/s), for a belt: the wall does not move with it. The velocity is
         in world axes and rotates with the wall from now on. At a contact the surface moves with the part of it across
         the contact normal, so a curved or closed surface moves along itself everywhere, also at rims. 0 stops it.
         """
-        self.world._ok(_lib.dem_wall_surface_velocity_set(self.world._at, self, velocity))
+        self.world._ok(_lib.dem_wall_surface_velocity_set(self.world._c, self, velocity))
 
     @property
     def surface_velocity(self):
         """Writes the velocity of the surface, in present world axes, to velocity."""
         velocity = Vec3()
-        self.world._ok(_lib.dem_wall_surface_velocity_get(self.world._at, self, velocity))
-        self.world._with(velocity)
+        self.world._ok(_lib.dem_wall_surface_velocity_get(self.world._c, self, velocity))
+        self.world._with(velocity, 'call Wall.surface_velocity_set(...), which changes the fields that it is given')
         return velocity
 
     @property
     def pose(self):
         """Writes the present pose of a wall to pose."""
         pose = Pose()
-        self.world._ok(_lib.dem_wall_pose_get(self.world._at, self, pose))
+        self.world._ok(_lib.dem_wall_pose_get(self.world._c, self, pose))
         self.world._with(pose)
         return pose
 
     def remove(self):
         """Removes a wall. Ids of other walls stay valid. It is an error if an outlet moves with it."""
-        self.world._ok(_lib.dem_wall_remove(self.world._at, self))
+        self.world._ok(_lib.dem_wall_remove(self.world._c, self))
 
     @property
     def loads(self):
         """Writes the loads of a wall to loads."""
         loads = WallLoads()
-        self.world._ok(_lib.dem_wall_loads_get(self.world._at, self, loads))
+        self.world._ok(_lib.dem_wall_loads_get(self.world._c, self, loads))
         self.world._with(loads)
         return loads
 
     def loads_reset(self):
         """Sets the sums of a wall's loads to 0."""
-        self.world._ok(_lib.dem_wall_loads_reset(self.world._at, self))
+        self.world._ok(_lib.dem_wall_loads_reset(self.world._c, self))
 
     def wear(self, coefficient, hardness):
         """Computes the wear of a wall by Archard's law: the worn volume is the work of sliding times a dimensionless
@@ -1570,7 +2685,7 @@ class Wall(Id):
         force and distance) divided by the coefficient of friction.
         """
         wear = Wear()
-        self.world._ok(_lib.dem_wall_wear_get(self.world._at, self, coefficient, hardness, wear))
+        self.world._ok(_lib.dem_wall_wear_get(self.world._c, self, coefficient, hardness, wear))
         self.world._with(wear)
         return wear
 
@@ -1580,9 +2695,9 @@ class Wall(Id):
         elements, at most `capacity` of them, and returns their number (0: the wall has no facets). The work counts
         for the facet that is nearest to the contact point. work: or null. Returns -1 if contacts are not recorded.
         """
-        capacity = self.world._number(_lib.dem_wall_wear_facets_get(self.world._at, self, None, 0))
+        capacity = self.world._number(_lib.dem_wall_wear_facets_get(self.world._c, self, None, 0))
         work = (ctypes.c_double*max(capacity, 1))()
-        count = self.world._number(_lib.dem_wall_wear_facets_get(self.world._at, self, ctypes.cast(work,
+        count = self.world._number(_lib.dem_wall_wear_facets_get(self.world._c, self, ctypes.cast(work,
             ctypes.POINTER(ctypes.c_double)), capacity))
         array = (work._type_*count).from_buffer(work)
         return array
@@ -1591,7 +2706,7 @@ class Wall(Id):
     def servo(self):
         """Writes the state of a servo wall to servo."""
         servo = Servo()
-        self.world._ok(_lib.dem_wall_servo_get(self.world._at, self, servo))
+        self.world._ok(_lib.dem_wall_servo_get(self.world._c, self, servo))
         self.world._with(servo)
         return servo
 
@@ -1599,7 +2714,8 @@ class Wall(Id):
         """Appends the loads of a wall to a CSV file: time (s), force (N), torque (N m), axial torque (N m), power (W),
         number of contacts. Writes the heading first if the file is new or empty.
         """
-        self.world._ok(_lib.dem_wall_loads_csv_write(self.world._at, self, os.fsencode(path)))
+        self.world._ok(_lib.dem_wall_loads_csv_write(self.world._c, self, _text_of(path,
+            'Wall.loads_csv_write: path')))
 
 
 @_struct
@@ -1607,7 +2723,6 @@ class Field(Id):
     """Counts from 1. A wall added after a removal gets an id of a later generation, such as 262145: ids are names, not
     indices.
     """
-    __slots__ = ()
     c_name = 'dem_field'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -1617,30 +2732,29 @@ class Field(Id):
     def data(self):
         """Writes pointers to the sums of a field to `data`."""
         data = FieldData()
-        self.world._ok(_lib.dem_field_get(self.world._at, self, data))
+        self.world._ok(_lib.dem_field_get(self.world._c, self, data))
         self.world._with(data)
         return data
 
     def cell(self, i, j, k):
         """Computes the means of the cell (i, j, k), which count from 0."""
         cell = FieldCell()
-        self.world._ok(_lib.dem_field_cell_get(self.world._at, self, i, j, k, cell))
+        self.world._ok(_lib.dem_field_cell_get(self.world._c, self, i, j, k, cell))
         self.world._with(cell)
         return cell
 
     def reset(self):
         """Sets the sums of a field, the averages of its bodies and its number of samples to 0; the window of time stays."""
-        self.world._ok(_lib.dem_field_reset(self.world._at, self))
+        self.world._ok(_lib.dem_field_reset(self.world._c, self))
 
     def csv_write(self, path):
         """Writes the cells of a field: centre (m) and what dem_field_cell_get returns."""
-        self.world._ok(_lib.dem_field_csv_write(self.world._at, self, os.fsencode(path)))
+        self.world._ok(_lib.dem_field_csv_write(self.world._c, self, _text_of(path, 'Field.csv_write: path')))
 
 
 @_struct
 class Group(Id):
     """counts from 1"""
-    __slots__ = ()
     c_name = 'dem_group'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -1650,7 +2764,6 @@ class Group(Id):
 @_struct
 class Shape(Id):
     """counts from 1 in desc.groups"""
-    __slots__ = ()
     c_name = 'dem_shape'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -1660,7 +2773,7 @@ class Shape(Id):
     def info(self):
         """Writes the properties of a shape to info."""
         info = ShapeInfo()
-        self.world._ok(_lib.dem_shape_get(self.world._at, self, info))
+        self.world._ok(_lib.dem_shape_get(self.world._c, self, info))
         self.world._with(info)
         return info
 
@@ -1668,7 +2781,6 @@ class Shape(Id):
 @_struct
 class Body(Id):
     """slot counts from 1. A later body in the same slot has another generation."""
-    __slots__ = ()
     c_name = 'dem_body'
     rows = [
         ('slot', ctypes.c_uint32, ''),
@@ -1677,14 +2789,14 @@ class Body(Id):
 
     def remove(self):
         """Removes a body. Its id becomes invalid."""
-        self.world._ok(_lib.dem_body_remove(self.world._at, self))
+        self.world._ok(_lib.dem_body_remove(self.world._c, self))
 
     @property
     def state(self):
         """Writes the state of a body to state."""
         state = BodyState()
-        self.world._ok(_lib.dem_body_get(self.world._at, self, state))
-        self.world._with(state)
+        self.world._ok(_lib.dem_body_get(self.world._c, self, state))
+        self.world._with(state, 'call Body.set(...), which changes the fields that it is given')
         return state
 
     def set(self, *, position=None, velocity=None, spin=None, fixed=None, orientation=None):
@@ -1700,7 +2812,8 @@ class Body(Id):
         state = self.state
         state._put({name: value for name, value in (('position', position), ('velocity', velocity), ('spin', spin),
             ('fixed', fixed), ('orientation', orientation),) if value is not None})
-        self.world._ok(_lib.dem_body_set(self.world._at, self, state))
+        state = self.world._bound(state, ('dem_body_set', self))
+        self.world._ok(_lib.dem_body_set(self.world._c, self, state))
 
     def radius_set(self, radius):
         """Sets the radius of a body, m, > 0 (dem_body_state.radius; all lengths of its shape scale with it). Mass and
@@ -1708,7 +2821,7 @@ class Body(Id):
         stay. The next step checks the time step, or chooses it again. The ledger counts the kinetic energy of the new
         mass as `inserted`, and what springs gain as `growth`. See desc.growth for radii that change all the time.
         """
-        self.world._ok(_lib.dem_body_radius_set(self.world._at, self, radius))
+        self.world._ok(_lib.dem_body_radius_set(self.world._c, self, radius))
 
     @property
     def reals(self):
@@ -1717,7 +2830,7 @@ class Body(Id):
         finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
         """
         reals = (Real*max(self.world._context.reals, 1))()
-        self.world._ok(_lib.dem_body_reals_get(self.world._at, self, ctypes.cast(reals, ctypes.POINTER(Real))))
+        self.world._ok(_lib.dem_body_reals_get(self.world._c, self, ctypes.cast(reals, ctypes.POINTER(Real))))
         return reals
 
     def reals_set(self, reals):
@@ -1725,8 +2838,8 @@ class Body(Id):
         dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
         finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
         """
-        reals = _array(reals, Real, self.world._context.reals, 'reals')
-        self.world._ok(_lib.dem_body_reals_set(self.world._at, self, reals))
+        reals = _array_of(reals, Real, 'Body.reals_set: reals', 1, self.world._context.reals)
+        self.world._ok(_lib.dem_body_reals_set(self.world._c, self, reals))
 
     def rail_set(self, *, axes=0, velocity=None, spin=None, wall=None):
         """Puts a body on a rail, changes its rail, or takes it off (axes 0). Its velocity and spin along locked axes
@@ -1739,13 +2852,14 @@ class Body(Id):
             any motion of a wall is a path for a body. Null means none, as after the removal of the wall.
         """
         desc = RailDesc(axes=axes, velocity=velocity, spin=spin, wall=wall)
-        self.world._ok(_lib.dem_body_rail_set(self.world._at, self, desc))
+        desc = self.world._bound(desc, ('dem_body_rail_set', self))
+        self.world._ok(_lib.dem_body_rail_set(self.world._c, self, desc))
 
     @property
     def reaction(self):
         """Writes the state of a body's rail to state. It is an error if the body has none."""
         state = RailState()
-        self.world._ok(_lib.dem_body_reaction_get(self.world._at, self, state))
+        self.world._ok(_lib.dem_body_reaction_get(self.world._c, self, state))
         self.world._with(state)
         return state
 
@@ -1753,7 +2867,7 @@ class Body(Id):
     def means(self):
         """Writes the averages of a grain to means. An error if no field averages bodies."""
         means = BodyMeans()
-        self.world._ok(_lib.dem_body_means_get(self.world._at, self, means))
+        self.world._ok(_lib.dem_body_means_get(self.world._c, self, means))
         self.world._with(means)
         return means
 
@@ -1761,7 +2875,6 @@ class Body(Id):
 @_struct
 class ContactWho(Struct):
     """The two bodies of a contact, for laws that request them by desc.law_who = 1."""
-    __slots__ = ()
     c_name = 'dem_contact_who'
     rows = [
         ('a', Body, "b is the null id at a wall; c->wall is then the wall's id"),
@@ -1792,7 +2905,6 @@ class Contact(Struct):
     the full step: use them for dashpots and friction. Displacements in the contact history grow by slip_step dt, the
     displacement of the step just taken, so that springs conserve energy as well as the integrator does.
     """
-    __slots__ = ()
     c_name = 'dem_contact'
     rows = [
         ('overlap', Real, 'm, > 0 in contact; < 0 across a gap (laws with a range only)'),
@@ -1839,7 +2951,6 @@ class Contact(Struct):
 @_struct
 class ContactEnergy(Struct):
     """The energies of one contact, J. Losses and work are those of the step."""
-    __slots__ = ()
     c_name = 'dem_contact_energy'
     rows = [
         ('dashpot', Real, 'lost to the normal dashpot; to hysteresis (dt 0: next step)'),
@@ -1855,7 +2966,6 @@ class ContactEnergy(Struct):
 @_struct
 class ContactForce(Struct):
     """The result of a contact law. All fields are 0 when the law is called."""
-    __slots__ = ()
     c_name = 'dem_contact_force'
     rows = [
         ('normal', Real, 'N, positive: repulsion'),
@@ -1913,7 +3023,6 @@ class Allocator(Struct):
     free_fn receives the size that was requested. One world, or one set of slabs, calls them from one thread at a
     time.
     """
-    __slots__ = ()
     c_name = 'dem_allocator'
     rows = [
         ('alloc_fn', AllocatorAllocFn, ''),
@@ -1929,9 +3038,8 @@ class ContactRows(Struct):
     q below `count`. Some contacts of a row are not in touch, and the last group is padded: dem.h ignores what the law
     returns for these, and clears their history.
     """
-    __slots__ = ()
     c_name = 'dem_contact_rows'
-    counts = {'count': ('touch', 1), 'memory_count': ('memory', 1)}
+    counts = {'count': (('touch', 1),), 'memory_count': (('memory', 1),)}
     rows = [
         ('count', ctypes.c_int, 'a multiple of DEM_ROW_GROUP'),
         ('memory_count', ctypes.c_int, 'desc.law_memory'),
@@ -1977,15 +3085,26 @@ class ContactRows(Struct):
 
 
 def _wrap_dem_law_fn(function, context, struct):
-    memory_type = ctypes.POINTER(Real*context.memory)
+    memory_type = _history(context.memory, context.vectors)
 
     def call(c, memory, force):
         try:
-            function(c[0], memory[0], force[0])
+            _c = Contact.from_address(c)
+            _memory = memory_type.from_address(memory) if memory else memory_type()
+            _force = ContactForce.from_address(force)
+            result = function(_c, _memory, _force)
+            if result is not None:
+                raise _returned(result, 'law')
+            if _refs(_c) > _ONE and _held(_c):
+                raise _kept('c')
+            if _refs(_memory) > _ONE and _held(_memory):
+                raise _kept('memory')
+            if _refs(_force) > _ONE and _held(_force):
+                raise _kept('force')
         except BaseException as error:
             context.fail(error)
-            ctypes.cast(force, ctypes.POINTER(Real))[0] = _NAN
-    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(Contact), memory_type, ctypes.POINTER(ContactForce))(call), LawFn.c)
+            Real.from_address(force).value = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), LawFn.c)
 
 
 LawFn = Function(_wrap_dem_law_fn, None, ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce))
@@ -1996,10 +3115,15 @@ def _wrap_dem_law_rows_fn(function, context, struct):
 
     def call(rows):
         try:
-            function(rows[0])
+            _rows = ContactRows.from_address(rows)
+            result = function(_rows)
+            if result is not None:
+                raise _returned(result, 'law_rows')
+            if _refs(_rows) > _ONE and _held(_rows):
+                raise _kept('rows')
         except BaseException as error:
             context.fail(error)
-    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(ContactRows))(call), LawRowsFn.c)
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p)(call), LawRowsFn.c)
 
 
 LawRowsFn = Function(_wrap_dem_law_rows_fn, None, ctypes.POINTER(ContactRows))
@@ -2007,15 +3131,23 @@ LawRowsFn.__doc__ = 'A law that computes the forces of a row of contacts: see de
 
 
 def _wrap_dem_law_rate_fn(function, context, struct):
-    rates_type = ctypes.POINTER(Real*2)
+    rates_type = Real*2
 
     def call(c, rates):
         try:
-            function(c[0], rates[0])
+            _c = Contact.from_address(c)
+            _rates = rates_type.from_address(rates) if rates else rates_type()
+            result = function(_c, _rates)
+            if result is not None:
+                raise _returned(result, 'law_rate')
+            if _refs(_c) > _ONE and _held(_c):
+                raise _kept('c')
+            if _refs(_rates) > _ONE and _held(_rates):
+                raise _kept('rates')
         except BaseException as error:
             context.fail(error)
-            rates[0][0] = _NAN
-    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(Contact), rates_type)(call), LawRateFn.c)
+            Real.from_address(rates).value = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(call), LawRateFn.c)
 
 
 LawRateFn = Function(_wrap_dem_law_rate_fn, None, ctypes.POINTER(Contact), ctypes.POINTER(Real))
@@ -2027,7 +3159,6 @@ class BodyState(Struct):
     """The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and ignores the rest;
     dem_body_radius_set sets the radius.
     """
-    __slots__ = ()
     c_name = 'dem_body_state'
     rows = [
         ('position', Vec3, 'm, m/s, rad/s'),
@@ -2052,16 +3183,27 @@ class BodyState(Struct):
 
 
 def _wrap_dem_reals_fn(function, context, struct):
-    reals_type = ctypes.POINTER(Real*context.reals)
-    rates_type = ctypes.POINTER(Real*context.reals)
+    reals_type = Real*context.reals
+    rates_type = Real*context.reals
 
     def call(reals, rates, body, id, time, dt, user):
         try:
-            function(reals[0], rates[0], body[0], id, time, dt)
+            _reals = reals_type.from_address(reals) if reals else reals_type()
+            _rates = rates_type.from_address(rates) if rates else rates_type()
+            _body = BodyState.from_address(body)
+            result = function(_reals, _rates, _body, id, time, dt)
+            if result is not None:
+                raise _returned(result, 'reals')
+            if _refs(_reals) > _ONE and _held(_reals):
+                raise _kept('reals')
+            if _refs(_rates) > _ONE and _held(_rates):
+                raise _kept('rates')
+            if _refs(_body) > _ONE and _held(_body):
+                raise _kept('body')
         except BaseException as error:
             context.fail(error)
-            reals[0][0] = _NAN
-    return ctypes.cast(ctypes.CFUNCTYPE(None, reals_type, rates_type, ctypes.POINTER(BodyState), Body, ctypes.c_double, Real, ctypes.c_void_p)(call), RealsFn.c)
+            Real.from_address(reals).value = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, Body, ctypes.c_double, Real, ctypes.c_void_p)(call), RealsFn.c)
 
 
 RealsFn = Function(_wrap_dem_reals_fn, None, ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(BodyState), Body, ctypes.c_double, Real, ctypes.c_void_p)
@@ -2072,11 +3214,15 @@ def _wrap_dem_growth_fn(function, context, struct):
 
     def call(body, id, time, user):
         try:
-            return int(function(body[0], id, time) or context.raised is not None)
+            _body = BodyState.from_address(body)
+            result = _real_from(function(_body, id, time), 'growth')
+            if _refs(_body) > _ONE and _held(_body):
+                raise _kept('body')
+            return result
         except BaseException as error:
             context.fail(error)
-            return 1
-    return ctypes.cast(ctypes.CFUNCTYPE(Real, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.c_void_p)(call), GrowthFn.c)
+            return _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(Real, ctypes.c_void_p, Body, ctypes.c_double, ctypes.c_void_p)(call), GrowthFn.c)
 
 
 GrowthFn = Function(_wrap_dem_growth_fn, Real, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.c_void_p)
@@ -2091,11 +3237,22 @@ def _wrap_dem_body_force_fn(function, context, struct):
 
     def call(body, id, time, force, torque, user):
         try:
-            function(body[0], id, time, force[0], torque[0])
+            _body = BodyState.from_address(body)
+            _force = Vec3.from_address(force)
+            _torque = Vec3.from_address(torque)
+            result = function(_body, id, time, _force, _torque)
+            if result is not None:
+                raise _returned(result, 'body_force')
+            if _refs(_body) > _ONE and _held(_body):
+                raise _kept('body')
+            if _refs(_force) > _ONE and _held(_force):
+                raise _kept('force')
+            if _refs(_torque) > _ONE and _held(_torque):
+                raise _kept('torque')
         except BaseException as error:
             context.fail(error)
-            ctypes.cast(force, ctypes.POINTER(Real))[0] = _NAN
-    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.POINTER(Vec3), ctypes.POINTER(Vec3), ctypes.c_void_p)(call), BodyForceFn.c)
+            Real.from_address(force).value = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, Body, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), BodyForceFn.c)
 
 
 BodyForceFn = Function(_wrap_dem_body_force_fn, None, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.POINTER(Vec3), ctypes.POINTER(Vec3), ctypes.c_void_p)
@@ -2105,7 +3262,6 @@ BodyForceFn.__doc__ = 'A force field that sees the whole body and may exert a to
 @_struct
 class WorldDesc(Struct):
     """The description of a world. dem_world_create_error_get checks it."""
-    __slots__ = ()
     c_name = 'dem_world_desc'
     rows = [
         ('gravity', Vec3, 'm/s2'),
@@ -2221,7 +3377,6 @@ class WorldDesc(Struct):
 @_struct
 class MaterialDesc(Struct):
     """A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients at most 1e9."""
-    __slots__ = ()
     c_name = 'dem_material_desc'
     rows = [
         ('density', Real, 'kg/m3, required, > 0'),
@@ -2254,7 +3409,6 @@ class Pair(Struct):
     give one; otherwise it follows from E*, or is the given one if E* is unknown because a material has no young; -
     stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu.
     """
-    __slots__ = ()
     c_name = 'dem_pair'
     rows = [
         ('young_eff', Real, 'Pa, E*, > 0; may be 0 where `young` may'),
@@ -2291,7 +3445,6 @@ class Pair(Struct):
 @_struct
 class Coefficients(Struct):
     """The coefficients of the built-in laws for two spheres."""
-    __slots__ = ()
     c_name = 'dem_coefficients'
     rows = [
         ('r_eff', Real, 'm, kg: effective radius and mass'),
@@ -2312,7 +3465,8 @@ def _wrap_dem_inside_fn(function, context, struct):
 
     def call(centre, radius, user):
         try:
-            return int(function(centre, radius) or context.raised is not None)
+            result = int(bool(function(centre, radius)) or context.raised is not None)
+            return result
         except BaseException as error:
             context.fail(error)
             return 1
@@ -2326,7 +3480,6 @@ InsideFn.__doc__ = 'Returns nonzero if a body with this bounding radius (m) may 
 @_struct
 class Region(Struct):
     """A region for new bodies."""
-    __slots__ = ()
     c_name = 'dem_region'
     rows = [
         ('box', Box,
@@ -2344,9 +3497,8 @@ class Region(Struct):
 @_struct
 class Sizes(Struct):
     """A size distribution, by radius."""
-    __slots__ = ()
     c_name = 'dem_sizes'
-    counts = {'count': ('radius', 1)}
+    counts = {'count': (('radius', 1), ('passing', 1))}
     rows = [
         ('kind', SizesKind, ''),
         ('by_count', ctypes.c_int, '1: F is a fraction of the number; 0 means of the mass'),
@@ -2374,7 +3526,6 @@ class Bodies(Struct):
     """The arrays of all bodies. Their order changes when the neighbour list is rebuilt; slots identify the bodies.
     Pointers are valid until the next step or change.
     """
-    __slots__ = ()
     c_name = 'dem_bodies'
     rows = [
         ('count', ctypes.c_int, ''),
@@ -2401,16 +3552,15 @@ class Bodies(Struct):
 @_struct
 class Selection(Struct):
     """Which bodies: those that fulfil every condition. DEM_SELECTION, all zero, selects every body."""
-    __slots__ = ()
     c_name = 'dem_selection'
-    counts = {'count': ('bodies', 1)}
+    counts = {'count': (('bodies', 1),)}
     rows = [
         ('group', Group, 'only members of this group; id 0 means any'),
         ('material', Material, 'only of this material; id 0 means any'),
         ('shape', Shape, 'only of this shape; id 0 means any, spheres included'),
         ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means no limit'),
         ('radius_max', Real, ""),
-        ('region', View(Region, const=True),
+        ('region', View(Region, const=True, one=True),
          'Only bodies whose centre is in this region, or on a periodic axis one of its images. Null means '
          'anywhere.'),
         ('count', ctypes.c_int, 'of bodies'),
@@ -2422,7 +3572,6 @@ class Selection(Struct):
 @_struct
 class BodiesMeans(Struct):
     """Sums and means over selected bodies; zeros if there are none."""
-    __slots__ = ()
     c_name = 'dem_bodies_means'
     rows = [
         ('bodies', ctypes.c_int, 'their number'),
@@ -2440,9 +3589,8 @@ class BodiesMeans(Struct):
 @_struct
 class ClusterDesc(Struct):
     """A rigid cluster of spheres, in a frame of your choice."""
-    __slots__ = ()
     c_name = 'dem_cluster_desc'
-    counts = {'count': ('positions', 3)}
+    counts = {'count': (('positions', 3), ('radii', 1))}
     rows = [
         ('count', ctypes.c_int, 'required, 1 to 1000: number of spheres'),
         ('positions', View(Real, 'count', 3, const=True), 'm, required: count x 3'),
@@ -2463,7 +3611,6 @@ class ClusterDesc(Struct):
 @_struct
 class ShapeInfo(Struct):
     """Properties of a shape."""
-    __slots__ = ()
     c_name = 'dem_shape_info'
     rows = [
         ('spheres', ctypes.c_int, 'of a cluster; otherwise 0'),
@@ -2482,7 +3629,6 @@ class ShapeInfo(Struct):
 @_struct
 class Ellipsoid(Struct):
     """An ellipsoid outside any world, for analysis. In m; orientation of any length, 0 means none."""
-    __slots__ = ()
     c_name = 'dem_ellipsoid'
     rows = [
         ('position', Vec3, ''),
@@ -2494,7 +3640,6 @@ class Ellipsoid(Struct):
 @_struct
 class EllipsoidContact(Struct):
     """The contact of two ellipsoids."""
-    __slots__ = ()
     c_name = 'dem_ellipsoid_contact'
     rows = [
         ('scale', Real, 'W0: scaled by it about their centres, the two touch in one point. < 1 if they overlap.'),
@@ -2513,7 +3658,6 @@ class BodyCounts(Struct):
     """Numbers of bodies. inserted = present + removed + left holds at all times. `left` counts those that left through
     outflow boundaries and outlets.
     """
-    __slots__ = ()
     c_name = 'dem_body_counts'
     rows = [
         ('inserted', ctypes.c_uint64, ''),
@@ -2526,7 +3670,6 @@ class BodyCounts(Struct):
 @_struct
 class MotionRow(Struct):
     """A pose or, for DEM_MOTION_SERVO, a load of a wall at a time."""
-    __slots__ = ()
     c_name = 'dem_motion_row'
     rows = [
         ('time', ctypes.c_double, 's, after start; the first is 0, ascending'),
@@ -2540,11 +3683,16 @@ def _wrap_dem_motion_fn(function, context, struct):
 
     def call(time, pose, user):
         try:
-            function(time, pose[0])
+            _pose = Pose.from_address(pose)
+            result = function(time, _pose)
+            if result is not None:
+                raise _returned(result, 'motion')
+            if _refs(_pose) > _ONE and _held(_pose):
+                raise _kept('pose')
         except BaseException as error:
             context.fail(error)
-            ctypes.cast(pose, ctypes.POINTER(Real))[0] = _NAN
-    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.POINTER(Pose), ctypes.c_void_p)(call), MotionFn.c)
+            Real.from_address(pose).value = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p)(call), MotionFn.c)
 
 
 MotionFn = Function(_wrap_dem_motion_fn, None, ctypes.c_double, ctypes.POINTER(Pose), ctypes.c_void_p)
@@ -2554,9 +3702,8 @@ MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is 
 @_struct
 class Motion(Struct):
     """The motion of a wall. It starts from the pose that the wall has when dem_wall_motion_set is called."""
-    __slots__ = ()
     c_name = 'dem_motion'
-    counts = {'table_count': ('table', 1)}
+    counts = {'table_count': (('table', 1),)}
     rows = [
         ('kind', MotionKind, ''),
         ('velocity', Vec3,
@@ -2598,9 +3745,8 @@ class Motion(Struct):
 @_struct
 class Mesh(Struct):
     """A triangle mesh: vertex_count x 3 coordinates (m), triangle_count x 3 vertex numbers from 0."""
-    __slots__ = ()
     c_name = 'dem_mesh'
-    counts = {'vertex_count': ('vertices', 3), 'triangle_count': ('triangles', 3)}
+    counts = {'vertex_count': (('vertices', 3),), 'triangle_count': (('triangles', 3),)}
     rows = [
         ('vertex_count', ctypes.c_int, ''),
         ('triangle_count', ctypes.c_int, ''),
@@ -2612,9 +3758,8 @@ class Mesh(Struct):
 @_struct
 class Profile(Struct):
     """A profile: vertex_count x 2 coordinates (m), segment_count x 2 vertex numbers from 0."""
-    __slots__ = ()
     c_name = 'dem_profile'
-    counts = {'vertex_count': ('vertices', 2), 'segment_count': ('segments', 2)}
+    counts = {'vertex_count': (('vertices', 2),), 'segment_count': (('segments', 2),)}
     rows = [
         ('vertex_count', ctypes.c_int, ''),
         ('segment_count', ctypes.c_int, ''),
@@ -2628,7 +3773,6 @@ class SieveDesc(Struct):
     """A sieve: a plane with rows of holes, infinite or cut out as a disc. The cost per sphere does not depend on the
     number of holes; that of a polyhedron on a plate grows with the holes below it.
     """
-    __slots__ = ()
     c_name = 'dem_sieve_desc'
     rows = [
         ('kind', SieveKind, 'required'),
@@ -2659,7 +3803,6 @@ class WallLoads(Struct):
     """The loads of grains on a wall. Torques are about the point of its motion (of a wall without a motion: its own
     point, or the origin for profiles, meshes and walls of grains).
     """
-    __slots__ = ()
     c_name = 'dem_wall_loads'
     rows = [
         ('force', Vec3, 'N, of the last step'),
@@ -2683,7 +3826,6 @@ class WallLoads(Struct):
 @_struct
 class Joint(Id):
     """The motor of a revolute joint."""
-    __slots__ = ()
     c_name = 'dem_joint'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -2691,25 +3833,25 @@ class Joint(Id):
 
     def motor_set(self, motor, speed, torque):
         """Replaces the motor of a joint from the next step on. The values are those of dem_joint_desc."""
-        self.world._ok(_lib.dem_joint_motor_set(self.world._at, self, _number(motor, Motor), speed, torque))
+        self.world._ok(_lib.dem_joint_motor_set(self.world._c, self, _enum_of(motor, Motor, 'Joint.motor_set: motor'),
+            speed, torque))
 
     @property
     def state(self):
         """Writes the state of a joint to state."""
         state = JointState()
-        self.world._ok(_lib.dem_joint_get(self.world._at, self, state))
+        self.world._ok(_lib.dem_joint_get(self.world._c, self, state))
         self.world._with(state)
         return state
 
     def remove(self):
         """Removes a joint."""
-        self.world._ok(_lib.dem_joint_remove(self.world._at, self))
+        self.world._ok(_lib.dem_joint_remove(self.world._c, self))
 
 
 @_struct
 class JointDesc(Struct):
     """A joint. Its point and axis refer to the present poses of the bodies."""
-    __slots__ = ()
     c_name = 'dem_joint_desc'
     rows = [
         ('kind', JointKind, 'required: how the two are joined'),
@@ -2730,7 +3872,6 @@ class JointDesc(Struct):
 @_struct
 class JointState(Struct):
     """The state of a joint."""
-    __slots__ = ()
     c_name = 'dem_joint_state'
     rows = [
         ('force', Vec3, 'N, N m about the joined point: on a (b has the opposite), of the last step, with the motor'),
@@ -2747,7 +3888,6 @@ class JointState(Struct):
 @_struct
 class RailDesc(Struct):
     """A rail. Components of velocity and spin along axes that are not locked are ignored."""
-    __slots__ = ()
     c_name = 'dem_rail_desc'
     rows = [
         ('axes', ctypes.c_int, '0 to 63: sum of DEM_RAIL_ constants; 0 means no rail'),
@@ -2762,7 +3902,6 @@ class RailDesc(Struct):
 @_struct
 class RailState(Struct):
     """The reaction of a rail: what it exerts on the body."""
-    __slots__ = ()
     c_name = 'dem_rail_state'
     rows = [
         ('desc', RailDesc, 'as set'),
@@ -2776,7 +3915,6 @@ class RailState(Struct):
 @_struct
 class Feed(Id):
     """bins of the distribution of residence times"""
-    __slots__ = ()
     c_name = 'dem_feed'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -2786,7 +3924,7 @@ class Feed(Id):
     def state(self):
         """Writes the state of a feed to state."""
         state = FeedState()
-        self.world._ok(_lib.dem_feed_get(self.world._at, self, state))
+        self.world._ok(_lib.dem_feed_get(self.world._c, self, state))
         self.world._with(state)
         return state
 
@@ -2794,7 +3932,6 @@ class Feed(Id):
 @_struct
 class Outlet(Id):
     """id counts from 1"""
-    __slots__ = ()
     c_name = 'dem_outlet'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -2804,19 +3941,20 @@ class Outlet(Id):
     def state(self):
         """Writes the counts of an outlet to state."""
         state = OutletState()
-        self.world._ok(_lib.dem_outlet_get(self.world._at, self, state))
+        self.world._ok(_lib.dem_outlet_get(self.world._c, self, state))
         self.world._with(state)
         return state
 
     def reset(self):
         """Sets the counts of an outlet to 0. dem_body_counts stays; grains inside have not entered."""
-        self.world._ok(_lib.dem_outlet_reset(self.world._at, self))
+        self.world._ok(_lib.dem_outlet_reset(self.world._c, self))
 
     def residence_csv_write(self, path):
         """Writes the distribution of the residence times of an outlet with residence_bin: for each bin up to the last
         one in use its middle (s), its grains, their fraction per s, and the fraction of all grains up to its end.
         """
-        self.world._ok(_lib.dem_outlet_residence_csv_write(self.world._at, self, os.fsencode(path)))
+        self.world._ok(_lib.dem_outlet_residence_csv_write(self.world._c, self, _text_of(path,
+            'Outlet.residence_csv_write: path')))
 
 
 @_struct
@@ -2826,9 +3964,8 @@ class FeedDesc(Struct):
     neighbour list. The list is rebuilt for the first grain of a new radius or material, and for every grain if the
     world has bodies that are not spheres.
     """
-    __slots__ = ()
     c_name = 'dem_feed_desc'
-    counts = {'class_count': ('radius', 1)}
+    counts = {'class_count': (('radius', 1), ('amount', 1), ('materials', 1), ('shapes', 1), ('sizes', 1))}
     rows = [
         ('material', Material, 'required'),
         ('class_count', ctypes.c_int, 'required, 1 to 16: size classes'),
@@ -2859,7 +3996,6 @@ class FeedDesc(Struct):
 @_struct
 class FeedState(Struct):
     """The state of a feed."""
-    __slots__ = ()
     c_name = 'dem_feed_state'
     rows = [
         ('fed', ctypes.c_uint64*CLASSES, 'grains added, per class and in all'),
@@ -2879,9 +4015,8 @@ class OutletDesc(Struct):
     sphere. With `keep` an outlet only counts the grains that enter, go back and are inside. The discharge through a
     plane is what enters the box behind it.
     """
-    __slots__ = ()
     c_name = 'dem_outlet_desc'
-    counts = {'class_count': ('radius', 1)}
+    counts = {'class_count': (('radius', 1),)}
     rows = [
         ('frame', Wall, 'the region moves with this wall; null means at rest'),
         ('box', Box, 'm, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0)'),
@@ -2901,7 +4036,6 @@ class OutletDesc(Struct):
 @_struct
 class OutletState(Struct):
     """The counts of an outlet: grains that were removed or, with `keep`, that entered."""
-    __slots__ = ()
     c_name = 'dem_outlet_state'
     rows = [
         ('count', ctypes.c_uint64*CLASSES, 'grains, per class and in all'),
@@ -2936,7 +4070,6 @@ class OutletState(Struct):
 @_struct
 class Advice(Struct):
     """The time step that a scene allows, and what limits it."""
-    __slots__ = ()
     c_name = 'dem_advice'
     rows = [
         ('dt', Real, 's, the proposed step: contact_time/50, or a fifth of the largest stable step if less'),
@@ -2958,7 +4091,6 @@ class Advice(Struct):
 @_struct
 class Finding(Struct):
     """One likely mistake in a scene."""
-    __slots__ = ()
     c_name = 'dem_finding'
     rows = [
         ('severity', Severity, ''),
@@ -2969,7 +4101,6 @@ class Finding(Struct):
 @_struct
 class CellDesc(Struct):
     """How the sides of a periodic domain, the cell, move. Begin with DEM_CELL_DESC: they do not."""
-    __slots__ = ()
     c_name = 'dem_cell_desc'
     rows = [
         ('rate', Vec3, '1/s, strain rate of each axis; positive: the cell becomes longer'),
@@ -2984,7 +4115,6 @@ class CellDesc(Struct):
 @_struct
 class CellState(Struct):
     """What the cell does."""
-    __slots__ = ()
     c_name = 'dem_cell_state'
     rows = [
         ('box', Box, 'm, the domain now'),
@@ -3001,7 +4131,6 @@ class CellState(Struct):
 @_struct
 class Counters(Struct):
     """Counters of a world. Checkpoints store them."""
-    __slots__ = ()
     c_name = 'dem_counters'
     rows = [
         ('steps', ctypes.c_uint64, 'steps taken; rebuilds of the neighbour list'),
@@ -3041,7 +4170,6 @@ class Ledger(Struct):
     cannot separate what the law stores from what it dissipates: `unknown` then holds the residual, and `residual` is
     0.
     """
-    __slots__ = ()
     c_name = 'dem_ledger'
     rows = [
         ('kinetic', ctypes.c_double, 'stored now'),
@@ -3076,7 +4204,6 @@ class Ledger(Struct):
 @_struct
 class Totals(Struct):
     """Totals over all bodies that can move."""
-    __slots__ = ()
     c_name = 'dem_totals'
     rows = [
         ('mass', ctypes.c_double, 'kg; J; J'),
@@ -3093,7 +4220,8 @@ def _wrap_dem_observer_fn(function, context, struct):
 
     def call(world, user):
         try:
-            return float(function(context.world(world)))
+            result = _real_from(function(context.world(world)), 'observer')
+            return result
         except BaseException as error:
             context.fail(error)
             return _NAN
@@ -3107,7 +4235,6 @@ ObserverFn.__doc__ = 'Returns one number by which a world is judged, an observab
 @_struct
 class Observable(Struct):
     """A named observable."""
-    __slots__ = ()
     c_name = 'dem_observable'
     rows = [
         ('name', str, '`unit` or null; both must outlive the dem_trials'),
@@ -3122,7 +4249,8 @@ def _wrap_dem_progress_fn(function, context, struct):
 
     def call(world, done, seconds_left, user):
         try:
-            return int(function(context.world(world), done, seconds_left) or context.raised is not None)
+            result = int(bool(function(context.world(world), done, seconds_left)) or context.raised is not None or context.stop)
+            return result
         except BaseException as error:
             context.fail(error)
             return 1
@@ -3136,9 +4264,8 @@ ProgressFn.__doc__ = 'Receives the progress of a run, about ten times per second
 @_struct
 class TrialsDesc(Struct):
     """How dem_trials_run works. Begin with DEM_TRIALS_DESC."""
-    __slots__ = ()
     c_name = 'dem_trials_desc'
-    counts = {'observable_count': ('observables', 1)}
+    counts = {'observable_count': (('observables', 1),)}
     rows = [
         ('duration', ctypes.c_double,
          's, required, > 0: simulated by each run, at least 64 steps. Observables are averaged over its second'
@@ -3164,7 +4291,6 @@ class TrialsDesc(Struct):
 @_struct
 class Trial(Struct):
     """The result of one trial."""
-    __slots__ = ()
     c_name = 'dem_trial'
     rows = [
         ('name', str, 'how the trial differs from the scene'),
@@ -3190,7 +4316,6 @@ class Trial(Struct):
 @_struct
 class Trials(Struct):
     """The results of dem_trials_run."""
-    __slots__ = ()
     c_name = 'dem_trials'
     rows = [
         ('count', ctypes.c_int, 'trials; index of the best one, 0: the scene as it is'),
@@ -3209,7 +4334,6 @@ class Trials(Struct):
 @_struct
 class ContactInfo(Struct):
     """One contact."""
-    __slots__ = ()
     c_name = 'dem_contact_info'
     rows = [
         ('a', Body, 'b is null for a contact with a wall'),
@@ -3229,7 +4353,6 @@ class Event(Struct):
     contact points has an overlap, or while a law with a range exerts a force beyond contact; with impulses, while its
     impulse is not 0. Bodies of several spheres and walls of several facets have one contact with each other.
     """
-    __slots__ = ()
     c_name = 'dem_event'
     rows = [
         ('kind', EventKind, ''),
@@ -3270,10 +4393,13 @@ def _wrap_dem_event_fn(function, context, struct):
 
     def call(event, user):
         try:
-            function(event[0])
+            _event = Event.from_address(event)
+            function(_event)
+            if _refs(_event) > _ONE and _held(_event):
+                raise _kept('event')
         except BaseException as error:
             context.fail(error)
-    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(Event), ctypes.c_void_p)(call), EventFn.c)
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(call), EventFn.c)
 
 
 EventFn = Function(_wrap_dem_event_fn, None, ctypes.POINTER(Event), ctypes.c_void_p)
@@ -3283,7 +4409,6 @@ EventFn.__doc__ = 'Receives one contact. It may only read the world.'
 @_struct
 class EventsDesc(Struct):
     """How contacts are recorded. Begin with DEM_EVENTS_DESC."""
-    __slots__ = ()
     c_name = 'dem_events_desc'
     rows = [
         ('function', EventFn,
@@ -3297,7 +4422,6 @@ class EventsDesc(Struct):
 @_struct
 class Impacts(Struct):
     """Statistics of the recorded contacts."""
-    __slots__ = ()
     c_name = 'dem_impacts'
     rows = [
         ('seconds', ctypes.c_double, 's, recorded so far'),
@@ -3324,7 +4448,6 @@ class Impacts(Struct):
 @_struct
 class Wear(Struct):
     """Wear of a wall since recording began."""
-    __slots__ = ()
     c_name = 'dem_wear'
     rows = [
         ('seconds', ctypes.c_double, 's, recorded so far'),
@@ -3339,7 +4462,6 @@ class Servo(Struct):
     """What a servo wall (DEM_MOTION_SERVO) does. Force, speed and distance are along the direction of its velocity, in
     which it presses the grains; a piston of several walls has one state.
     """
-    __slots__ = ()
     c_name = 'dem_servo'
     rows = [
         ('target', ctypes.c_double, 'N: force to reach and force on the grains, now'),
@@ -3358,7 +4480,6 @@ class Servo(Struct):
 @_struct
 class Stress(Struct):
     """Stress and fabric of the whole domain. Tensors are xx yy zz xy xz yz."""
-    __slots__ = ()
     c_name = 'dem_stress'
     rows = [
         ('volume', ctypes.c_double, 'm3, of the domain; fraction that bodies fill'),
@@ -3383,7 +4504,6 @@ class FieldDesc(Struct):
     time. A grain counts in the cell of its centre ([MIL] 5.2.9), so cells smaller than grains need a long window; or
     it is spread about its centre by coarse graining (width). Begin with DEM_FIELD_DESC.
     """
-    __slots__ = ()
     c_name = 'dem_field_desc'
     rows = [
         ('box', Box,
@@ -3412,7 +4532,6 @@ class FieldData(Struct):
     """The sums of a field over its samples. Cell (i, j, k) has index i + cells[0]*(j + cells[1]*k). The pointers are
     valid until the next step.
     """
-    __slots__ = ()
     c_name = 'dem_field_data'
     rows = [
         ('cells', ctypes.c_int*3, ''),
@@ -3438,7 +4557,6 @@ class FieldData(Struct):
 @_struct
 class FieldCell(Struct):
     """Means of one cell over the samples; 0 where no grain was."""
-    __slots__ = ()
     c_name = 'dem_field_cell'
     rows = [
         ('grains', ctypes.c_double, 'number of grains in the cell'),
@@ -3465,7 +4583,6 @@ class BodyMeans(Struct):
     """Averages of one grain over the samples of the field with desc.bodies, wherever the grain was. The field chooses
     grains by material, radius and group.
     """
-    __slots__ = ()
     c_name = 'dem_body_means'
     rows = [
         ('samples', ctypes.c_uint64, 'number of samples; 0: all others are 0'),
@@ -3483,7 +4600,6 @@ class MixingDesc(Struct):
     """Two components of a mixture: the grains of one material or of a range of radii, and all others. Only grains in
     `box` that can move count. Begin with DEM_MIXING_DESC.
     """
-    __slots__ = ()
     c_name = 'dem_mixing_desc'
     rows = [
         ('box', Box, 'm, required: what the cells divide'),
@@ -3502,7 +4618,6 @@ class Mixing(Struct):
     """Mixing of two components (>>mixing has the formulas). Indices that are not defined are NaN: if one component is
     absent, if all grains are in one cell, or if no cell has two grains.
     """
-    __slots__ = ()
     c_name = 'dem_mixing'
     rows = [
         ('grains', ctypes.c_int, 'grains in the box; of these, grains of the component'),
@@ -3530,7 +4645,6 @@ class Mixing(Struct):
 @_struct
 class Repose(Struct):
     """The slope of a free surface, against gravity."""
-    __slots__ = ()
     c_name = 'dem_repose'
     rows = [
         ('angle', ctypes.c_double, 'rad, of the straight line fitted to the surface'),
@@ -3542,7 +4656,6 @@ class Repose(Struct):
 @_struct
 class MeshHealth(Struct):
     """Defects of a mesh, as counted on reading. They never stop a run."""
-    __slots__ = ()
     c_name = 'dem_mesh_health'
     rows = [
         ('open_edges', ctypes.c_int, 'edges with one triangle'),
@@ -3564,7 +4677,6 @@ class MeshHealth(Struct):
 @_struct
 class SpheresFit(Struct):
     """The mass properties of a closed mesh, and how well spheres fit it."""
-    __slots__ = ()
     c_name = 'dem_spheres_fit'
     rows = [
         ('volume', Real, 'm3, of the mesh, exact'),
@@ -3580,7 +4692,6 @@ class SpheresFit(Struct):
 @_struct
 class WallPart(Struct):
     """A named part of a file that becomes a wall."""
-    __slots__ = ()
     c_name = 'dem_wall_part'
     rows = [
         ('name', str, 'as for dem_mesh_part_read'),
@@ -3592,9 +4703,8 @@ class WallPart(Struct):
 @_struct
 class Grains(Struct):
     """Spheres, as read from a file. Arrays for which the file has no data are null."""
-    __slots__ = ()
     c_name = 'dem_grains'
-    counts = {'count': ('positions', 3)}
+    counts = {'count': (('positions', 3), ('radii', 1), ('velocities', 3), ('spins', 3), ('materials', 1))}
     rows = [
         ('count', ctypes.c_int, ''),
         ('positions', View(Real, 'count', 3), 'm, count x 3; m, count'),
@@ -3611,7 +4721,8 @@ def _wrap_dem_replay_desc_number_fn(function, context, struct):
 
     def call(world, body, user):
         try:
-            return float(function(context.world(world), body))
+            result = _real_from(function(context.world(world), body), 'replay_desc_number')
+            return result
         except BaseException as error:
             context.fail(error)
             return _NAN
@@ -3625,7 +4736,6 @@ ReplayDescNumberFn.__doc__ = 'returns the number of a body, for every frame; nul
 @_struct
 class ReplayDesc(Struct):
     """How a replay is recorded. Begin with DEM_REPLAY_DESC."""
-    __slots__ = ()
     c_name = 'dem_replay_desc'
     rows = [
         ('title', str, 'copied; null means the name of the file'),
@@ -3651,7 +4761,6 @@ class ReplayDesc(Struct):
 @_struct
 class Output(Id):
     """A scheduled output."""
-    __slots__ = ()
     c_name = 'dem_output'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -3661,19 +4770,24 @@ class Output(Id):
         """Ends an output; files that it has written stay. Its id is never used again. To change an output, remove it and
         add another. The function of an output may remove any output, also its own.
         """
-        self.world._ok(_lib.dem_output_remove(self.world._at, self))
+        self.world._ok(_lib.dem_output_remove(self.world._c, self))
 
 
 def _wrap_dem_output_desc_values(function, context, struct):
-    values_type = ctypes.POINTER(ctypes.c_double*(len(struct.columns.split())))
+    values_type = ctypes.c_double*(len((struct.columns or '').split()))
 
     def call(world, values, user):
         try:
-            function(context.world(world), values[0])
+            _values = values_type.from_address(values) if values else values_type()
+            result = function(context.world(world), _values)
+            if result is not None:
+                raise _returned(result, 'output_desc_values')
+            if _refs(_values) > _ONE and _held(_values):
+                raise _kept('values')
         except BaseException as error:
             context.fail(error)
-            values[0][0] = _NAN
-    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, values_type, ctypes.c_void_p)(call), OutputDescValues.c)
+            Real.from_address(values).value = _NAN
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), OutputDescValues.c)
 
 
 OutputDescValues = Function(_wrap_dem_output_desc_values, None, ctypes.c_void_p, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p)
@@ -3684,7 +4798,8 @@ def _wrap_dem_output_desc_function(function, context, struct):
 
     def call(world, number, user):
         try:
-            return int(function(context.world(world), number) or context.raised is not None)
+            result = int(bool(function(context.world(world), number)) or context.raised is not None)
+            return result
         except BaseException as error:
             context.fail(error)
             return 1
@@ -3698,7 +4813,6 @@ OutputDescFunction.__doc__ = 'CALL: may change the world, but not step it. A ret
 @_struct
 class OutputDesc(Struct):
     """How an output works. Begin with DEM_OUTPUT_DESC."""
-    __slots__ = ()
     c_name = 'dem_output_desc'
     rows = [
         ('kind', OutputKind, ''),
@@ -3737,7 +4851,8 @@ def _wrap_dem_transport_exchange_fn(function, context, struct):
 
     def call(to_lower, to_lower_size, from_lower, from_lower_size, to_upper, to_upper_size, from_upper, from_upper_size, user):
         try:
-            return int(function(to_lower, to_lower_size, from_lower, from_lower_size, to_upper, to_upper_size, from_upper, from_upper_size) or context.raised is not None)
+            result = int(bool(function(to_lower, to_lower_size, from_lower, from_lower_size, to_upper, to_upper_size, from_upper, from_upper_size)) or context.raised is not None)
+            return result
         except BaseException as error:
             context.fail(error)
             return 1
@@ -3752,7 +4867,8 @@ def _wrap_dem_transport_reduce_fn(function, context, struct):
 
     def call(values, count, sum, user):
         try:
-            return int(function(ctypes.cast(values, ctypes.POINTER(ctypes.c_double*count))[0], count, sum) or context.raised is not None)
+            result = int(bool(function(ctypes.cast(values, ctypes.POINTER(ctypes.c_double*count))[0], count, sum)) or context.raised is not None)
+            return result
         except BaseException as error:
             context.fail(error)
             return 1
@@ -3769,7 +4885,6 @@ class Transport(Struct):
     their slabs (the last is below the first), and make the same calls in the same order. Both functions return 0, or
     another value to stop the run; slabs cannot be used after that. docs/parallel.md shows both for MPI.
     """
-    __slots__ = ()
     c_name = 'dem_transport'
     rows = [
         ('exchange_fn', TransportExchangeFn,
@@ -3785,7 +4900,6 @@ class Transport(Struct):
 @_struct
 class SlabsDesc(Struct):
     """How a scene is divided. Begin with DEM_SLABS_DESC."""
-    __slots__ = ()
     c_name = 'dem_slabs_desc'
     rows = [
         ('axis', ctypes.c_int, '0, 1, 2: borders are planes x, y, z = const'),
@@ -3805,7 +4919,6 @@ class SlabsDesc(Struct):
 @_struct
 class Slab(Struct):
     """One slab."""
-    __slots__ = ()
     c_name = 'dem_slab'
     rows = [
         ('grains', ctypes.c_int, 'its own grains; copies of grains of the lower neighbour'),
@@ -3821,7 +4934,6 @@ class Slab(Struct):
 @_struct
 class SlabsCounters(Struct):
     """Counters of slabs."""
-    __slots__ = ()
     c_name = 'dem_slabs_counters'
     rows = [
         ('time', ctypes.c_double, 's, simulated'),
@@ -3837,7 +4949,6 @@ class SlabsCounters(Struct):
 @_struct
 class Effect(Struct):
     """An effect of the scene, such as friction, walls or the ledger."""
-    __slots__ = ()
     c_name = 'dem_effect'
     rows = [
         ('name', str, ''),
@@ -3854,14 +4965,20 @@ class Effect(Struct):
 
 
 def _wrap_dem_contact_fn(function, context, struct):
-    memory_type = ctypes.POINTER(Real*context.memory)
+    memory_type = _history(context.memory, context.vectors)
 
     def call(contact, memory, user):
         try:
-            function(contact[0], memory[0])
+            _contact = ContactInfo.from_address(contact)
+            _memory = memory_type.from_address(memory) if memory else memory_type()
+            function(_contact, _memory)
+            if _refs(_contact) > _ONE and _held(_contact):
+                raise _kept('contact')
+            if _refs(_memory) > _ONE and _held(_memory):
+                raise _kept('memory')
         except BaseException as error:
             context.fail(error)
-    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.POINTER(ContactInfo), memory_type, ctypes.c_void_p)(call), ContactFn.c)
+    return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), ContactFn.c)
 
 
 ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ctypes.POINTER(Real), ctypes.c_void_p)
@@ -3982,7 +5099,7 @@ class World(WorldBase):
         a scene without its floor would run and return DEM_OK. Runs work again once the program has called
         dem_world_error_get or repeated the failed call with success.
         """
-        return (_lib.dem_world_error_get(self._at) or b'').decode()
+        return (_lib.dem_world_error_get(self._c) or b'').decode()
 
     @property
     def desc(self):
@@ -3990,7 +5107,7 @@ class World(WorldBase):
         thickness and threads where they were 0. skin: present value; 0 before the first list or if desc.skin < 0.
         Other zeros stay 0, such as laws, sweeps and tolerance.
         """
-        found = _lib.dem_world_desc_get(self._at)
+        found = _lib.dem_world_desc_get(self._c)
         self._ok(0)
         return self._with(found)
 
@@ -4017,13 +5134,13 @@ class World(WorldBase):
             friction_static=friction_static, rolling_friction=rolling_friction, stiffness=stiffness,
             stiffness_ratio=stiffness_ratio, stiffness_unloading=stiffness_unloading,
             stiffness_adhesion=stiffness_adhesion)
-        return self._id(_lib.dem_material_add(self._at, desc))
+        return self._id(_lib.dem_material_add(self._c, desc))
 
     def pair(self, a, b):
         """Writes the contact properties of two materials to pair."""
         pair = Pair()
-        self._ok(_lib.dem_pair_get(self._at, a, b, pair))
-        self._with(pair)
+        self._ok(_lib.dem_pair_get(self._c, a, b, pair))
+        self._with(pair, 'call World.pair_set(...), which changes the fields that it is given')
         return pair
 
     def pair_set(self, a, b, *, young_eff=None, shear_eff=None, restitution=None, friction=None,
@@ -4063,14 +5180,14 @@ class World(WorldBase):
             tangent_damping), ('normal_damping', normal_damping), ('spinning_friction', spinning_friction),
             ('cohesion', cohesion), ('compliance', compliance), ('stiffness_adhesion', stiffness_adhesion),
             ('ignored', ignored),) if value is not None})
-        self._ok(_lib.dem_pair_set(self._at, a, b, pair))
+        self._ok(_lib.dem_pair_set(self._c, a, b, pair))
 
     def coefficients(self, a, b, radius_a, radius_b):
         """Computes the coefficients for spheres of radius_a and radius_b (m). radius_b = 0 means a wall of material b.
         The impact speed is that of the desc, or 1 m/s if it is 0 there.
         """
         out = Coefficients()
-        self._ok(_lib.dem_coefficients_get(self._at, a, b, radius_a, radius_b, out))
+        self._ok(_lib.dem_coefficients_get(self._c, a, b, radius_a, radius_b, out))
         self._with(out)
         return out
 
@@ -4078,21 +5195,21 @@ class World(WorldBase):
         """Prints contact properties of all pairs of materials, one line per pair: moduli, restitution, friction and
         stiffness; with impulses also spinning friction, cohesion and compliance.
         """
-        return self._print(_lib.dem_pairs_print, out, self._at)
+        return self._print(_lib.dem_pairs_print, out, self._c)
 
     def sphere(self, material, radius, position):
         """Adds a sphere, or in a planar world a disc, at rest. radius > 0 and position in m."""
-        return self._id(_lib.dem_sphere_add(self._at, material, radius, position))
+        return self._id(_lib.dem_sphere_add(self._c, material, radius, position))
 
     def spheres(self, material, positions, velocities=None, radii=None, radius=0):
         """Adds count spheres, all or none. positions: count x 3, m. velocities: count x 3, m/s, or null for rest. radii:
         count, m, or null if all have `radius`.
         """
-        positions = _array(positions, Real)
-        count = _count(positions, 3, 'positions')
-        velocities = _array(velocities, Real, 3*count, 'velocities')
-        radii = _array(radii, Real, count, 'radii')
-        self._ok(_lib.dem_spheres_add(self._at, material, count, positions, velocities, radii, radius))
+        positions = _array_of(positions, Real, 'World.spheres: positions', 3)
+        count = len(positions)//3
+        velocities = _array_of(velocities, Real, 'World.spheres: velocities', 3, count, True)
+        radii = _array_of(radii, Real, 'World.spheres: radii', 1, count, True)
+        self._ok(_lib.dem_spheres_add(self._c, material, count, positions, velocities, radii, radius))
 
     def spheres_fill(self, material, radius, region, count, seed):
         """Adds up to count spheres of one radius (m) at random positions in a region, one after the other. The same seed
@@ -4102,21 +5219,21 @@ class World(WorldBase):
         the inside of a closed mesh counts like its outside. Returns how many were added. If these are fewer than
         count, 2000 tries for one sphere failed; dem_world_error_get says so, but the world can run.
         """
-        return self._filled(_lib.dem_spheres_fill(self._at, material, radius, self._bound(Region.make(region)), count,
-            seed), count, 'dem_spheres_fill')
+        return self._filled(_lib.dem_spheres_fill(self._c, material, radius, self._bound(_struct_of(Region, region,
+            'World.spheres_fill: region')), count, seed), count, 'dem_spheres_fill')
 
     def sizes_finer(self, sizes, radius):
         """Returns the fraction finer than a radius (m), of mass or number as by_count says; -1 on error."""
-        sizes = self._bound(Sizes.make(sizes))
-        return self._number(_lib.dem_sizes_finer_get(self._at, sizes, radius))
+        sizes = self._bound(_struct_of(Sizes, sizes, 'World.sizes_finer: sizes'))
+        return self._number(_lib.dem_sizes_finer_get(self._c, sizes, radius))
 
     def sizes_draw(self, sizes, count, seed):
         """Draws count radii (m) at random or, with seed 0, at equal steps of the distribution of numbers, ascending:
         then a few hundred radii represent it within 1 %. Mass is proportional to r^3, in planar worlds to r^2.
         """
-        sizes = self._bound(Sizes.make(sizes))
-        radii = (Real*max(count, 1))()
-        self._ok(_lib.dem_sizes_draw(self._at, sizes, count, seed, ctypes.cast(radii, ctypes.POINTER(Real))))
+        sizes = self._bound(_struct_of(Sizes, sizes, 'World.sizes_draw: sizes'))
+        radii = (Real*_size_of(count, 'World.sizes_draw: count'))()
+        self._ok(_lib.dem_sizes_draw(self._c, sizes, count, seed, ctypes.cast(radii, ctypes.POINTER(Real))))
         return radii
 
     def sizes_classes(self, sizes, class_count):
@@ -4124,10 +5241,10 @@ class World(WorldBase):
         fields radius and amount of dem_feed_desc (with by_mass = 1 - by_count). radius (m) is that of a grain of the
         mean mass of its class; the amounts sum to 1. Returns the number of classes that are not empty; 0 on error.
         """
-        sizes = self._bound(Sizes.make(sizes))
-        radius = (Real*max(class_count, 1))()
-        amount = (ctypes.c_double*max(class_count, 1))()
-        found = _lib.dem_sizes_classes_get(self._at, sizes, class_count, ctypes.cast(radius, ctypes.POINTER(Real)),
+        sizes = self._bound(_struct_of(Sizes, sizes, 'World.sizes_classes: sizes'))
+        radius = (Real*_size_of(class_count, 'World.sizes_classes: class_count'))()
+        amount = (ctypes.c_double*_size_of(class_count, 'World.sizes_classes: class_count'))()
+        found = _lib.dem_sizes_classes_get(self._c, sizes, class_count, ctypes.cast(radius, ctypes.POINTER(Real)),
             ctypes.cast(amount, ctypes.POINTER(ctypes.c_double)))
         self._filled(found, 0, 'dem_sizes_classes_get')
         return list(radius[:found]), list(amount[:found])
@@ -4136,9 +5253,9 @@ class World(WorldBase):
         """Adds up to count spheres, as dem_spheres_fill does, with radii as dem_sizes_draw gives them for its seed 0,
         largest first, while there is most room. seed is for the positions.
         """
-        sizes = self._bound(Sizes.make(sizes))
-        return self._filled(_lib.dem_sizes_fill(self._at, material, sizes, self._bound(Region.make(region)), count,
-            seed), count, 'dem_sizes_fill')
+        sizes = self._bound(_struct_of(Sizes, sizes, 'World.sizes_fill: sizes'))
+        return self._filled(_lib.dem_sizes_fill(self._c, material, sizes, self._bound(_struct_of(Region, region,
+            'World.sizes_fill: region')), count, seed), count, 'dem_sizes_fill')
 
     def spheres_pack(self, material, radius, padding, region, count=0):
         """Adds spheres on a hexagonal close packing, in layers along z, with a gap of padding (m, >= 0) between
@@ -4146,15 +5263,15 @@ class World(WorldBase):
         dem_spheres_fill. In a planar world the packing is a triangular lattice. Spheres at opposite periodic faces do
         not overlap, but the lattice does not continue across the faces. Returns how many were added.
         """
-        return self._filled(_lib.dem_spheres_pack(self._at, material, radius, padding,
-            self._bound(Region.make(region)), count), count, 'dem_spheres_pack')
+        return self._filled(_lib.dem_spheres_pack(self._c, material, radius, padding, self._bound(_struct_of(Region,
+            region, 'World.spheres_pack: region')), count), count, 'dem_spheres_pack')
 
     @property
     def temperature(self):
         """Returns the granular temperature, m2/s2: the mass-weighted mean square deviation of velocities from their
         mean, per axis (two in a planar world), over all bodies that can move. Returns 0 for fewer than two bodies.
         """
-        found = _lib.dem_temperature_get(self._at)
+        found = _lib.dem_temperature_get(self._c)
         self._ok(0)
         return found
 
@@ -4164,63 +5281,62 @@ class World(WorldBase):
         and the spins stay. It is an error if fewer than two bodies can move, or if seed is 0 and the present
         temperature is 0.
         """
-        self._ok(_lib.dem_temperature_set(self._at, temperature, seed))
+        self._ok(_lib.dem_temperature_set(self._c, temperature, seed))
 
     @property
-    def bodies(self):
+    def bodies_memory(self):
         """Returns the arrays of all bodies; zeros for a null world."""
-        found = _lib.dem_bodies_get(self._at)
+        found = _lib.dem_bodies_get(self._c)
         self._ok(0)
         return self._with(found)
 
     def body_id(self, index):
         """Returns the id of the body at this index of the arrays; zeros if there is none."""
-        found = _lib.dem_body_id_get(self._at, index)
-        self._ok(0)
-        found._of = self
-        return found if found else None
+        return self.bodies[index]
 
     def group(self, name):
         """Returns the group with this name in desc.groups."""
-        found = _lib.dem_group_get(self._at, name.encode())
+        found = _lib.dem_group_get(self._c, _text_of(name, 'World.group: name'))
         self._ok(0)
+        if not found:
+            self._raise(ArgumentError)
         found._of = self
-        return found if found else None
+        return found
 
     def bodies_select(self, selection):
         """Writes the ids of the selected bodies, in the order of their slots, at most `capacity` of them. Returns how
         many are selected, -1 on error. `out` or null, to count them. Selections are made between steps: laws and
         other functions that a step calls cannot make them.
         """
-        selection = self._bound(Selection.make(selection))
-        capacity = self._number(_lib.dem_bodies_select(self._at, selection, None, 0))
+        selection = self._bound(_struct_of(Selection, selection, 'World.bodies_select: selection'))
+        capacity = self._number(_lib.dem_bodies_select(self._c, selection, None, 0))
         out = (Body*max(capacity, 1))()
-        count = self._number(_lib.dem_bodies_select(self._at, selection, ctypes.cast(out, ctypes.POINTER(Body)),
+        count = self._number(_lib.dem_bodies_select(self._c, selection, ctypes.cast(out, ctypes.POINTER(Body)),
             capacity))
         array = (out._type_*count).from_buffer(out)
-        return array
+        return [item.of(self) for item in array]
 
     def bodies_group_set(self, selection, group, member):
         """Makes the selected bodies members of a group (member = 1), or takes them out (0). A body may be in many
         groups. Members stay members when bodies are sorted, restarted or dealt to slabs. Returns how many bodies are
         selected, -1 on error.
         """
-        selection = self._bound(Selection.make(selection))
-        return self._number(_lib.dem_bodies_group_set(self._at, selection, group, member))
+        selection = self._bound(_struct_of(Selection, selection, 'World.bodies_group_set: selection'))
+        return self._number(_lib.dem_bodies_group_set(self._c, selection, group, member))
 
     def bodies_velocity_set(self, selection, velocity, spin):
         """Gives the selected bodies a velocity (m/s) and a spin (rad/s), as dem_body_set does. Returns their number, -1
         on error.
         """
-        selection = self._bound(Selection.make(selection))
-        return self._number(_lib.dem_bodies_velocity_set(self._at, selection, velocity, spin))
+        selection = self._bound(_struct_of(Selection, selection, 'World.bodies_velocity_set: selection'))
+        return self._number(_lib.dem_bodies_velocity_set(self._c, selection, velocity, spin))
 
     def bodies_fixed_set(self, selection, fixed):
         """Freezes the selected bodies (fixed = 1), which then never move, or frees them (0). Returns their number, -1 on
         error.
         """
-        selection = self._bound(Selection.make(selection))
-        return self._number(_lib.dem_bodies_fixed_set(self._at, selection, fixed))
+        selection = self._bound(_struct_of(Selection, selection, 'World.bodies_fixed_set: selection'))
+        return self._number(_lib.dem_bodies_fixed_set(self._c, selection, fixed))
 
     def bodies_remove(self, *, group=None, material=None, shape=None, radius_min=0, radius_max=0, region=None,
             count=0, bodies=None):
@@ -4237,7 +5353,8 @@ class World(WorldBase):
         """
         selection = Selection(group=group, material=material, shape=shape, radius_min=radius_min,
             radius_max=radius_max, region=region, count=count, bodies=bodies)
-        return self._number(_lib.dem_bodies_remove(self._at, selection))
+        selection = self._bound(selection)
+        return self._number(_lib.dem_bodies_remove(self._c, selection))
 
     def bodies_means(self, *, group=None, material=None, shape=None, radius_min=0, radius_max=0, region=None,
             count=0, bodies=None):
@@ -4255,7 +5372,8 @@ class World(WorldBase):
         means = BodiesMeans()
         selection = Selection(group=group, material=material, shape=shape, radius_min=radius_min,
             radius_max=radius_max, region=region, count=count, bodies=bodies)
-        self._ok(_lib.dem_bodies_means_get(self._at, selection, means))
+        selection = self._bound(selection)
+        self._ok(_lib.dem_bodies_means_get(self._c, selection, means))
         self._with(means)
         return means
 
@@ -4264,14 +5382,15 @@ class World(WorldBase):
         dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
         finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
         """
-        reals = _array(reals, Real, self._context.reals*self.bodies.count, 'reals')
-        self._ok(_lib.dem_bodies_reals_set(self._at, reals))
+        reals = _array_of(reals, Real, 'World.bodies_reals_set: reals', max(self._context.reals, 1),
+            self.bodies.count)
+        self._ok(_lib.dem_bodies_reals_set(self._c, reals))
 
     def shape_ellipsoid(self, semi_axes):
         """Adds an ellipsoid with these semi-axes (m, > 0) along x, y and z of its frame. The longest may be at most 1000
         times the shortest. Not in planar worlds.
         """
-        return self._id(_lib.dem_shape_ellipsoid_add(self._at, semi_axes))
+        return self._id(_lib.dem_shape_ellipsoid_add(self._c, semi_axes))
 
     def shape_cluster(self, *, count=0, positions=None, radii=None, radius=0, mass=0, rays=0, volume=0,
             centre=None, inertia=()):
@@ -4290,7 +5409,7 @@ class World(WorldBase):
         """
         desc = ClusterDesc(count=count, positions=positions, radii=radii, radius=radius, mass=mass, rays=rays,
             volume=volume, centre=centre, inertia=inertia)
-        return self._id(_lib.dem_shape_cluster_add(self._at, desc))
+        return self._id(_lib.dem_shape_cluster_add(self._c, desc))
 
     def shape_polyhedron(self, points):
         """Adds a convex polyhedron: the convex hull of points (count x 3, m, 4 to 10,000), in a frame of your choice.
@@ -4302,9 +5421,9 @@ class World(WorldBase):
         its force is spread; counters count it once. With impulses it has up to four points, each with its own gap
         (>>gaps); counters count the points with a repulsive force.
         """
-        points = _array(points, Real)
-        count = _count(points, 3, 'points')
-        return self._id(_lib.dem_shape_polyhedron_add(self._at, count, points))
+        points = _array_of(points, Real, 'World.shape_polyhedron: points', 3)
+        count = len(points)//3
+        return self._id(_lib.dem_shape_polyhedron_add(self._c, count, points))
 
     def shape_mesh(self, mesh, dent=0):
         """Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if the mesh lies
@@ -4312,8 +5431,8 @@ class World(WorldBase):
         a body, as for dem_mesh_spheres; for an open mesh pass its vertices to dem_shape_polyhedron_add. Not in planar
         worlds.
         """
-        mesh = self._bound(Mesh.make(mesh))
-        return self._id(_lib.dem_shape_mesh_add(self._at, mesh, dent))
+        mesh = self._bound(_struct_of(Mesh, mesh, 'World.shape_mesh: mesh'))
+        return self._id(_lib.dem_shape_mesh_add(self._c, mesh, dent))
 
     def shape_union(self, shapes, positions=None, orientations=None):
         """Adds a union: count (1 to 1000) polyhedra, polygons or ellipsoids as one rigid body, in a frame of your
@@ -4321,11 +5440,11 @@ class World(WorldBase):
         null means none is rotated). Mass, moments and contact forces are the sums over the pieces: overlapping pieces
         count twice. Clusters and unions cannot be pieces.
         """
-        shapes = _array(shapes, Shape)
-        count = _count(shapes, 1, 'shapes')
-        positions = _array(positions, Real, 3*count, 'positions')
-        orientations = _array(orientations, Real, 4*count, 'orientations')
-        return self._id(_lib.dem_shape_union_add(self._at, count, shapes, positions, orientations))
+        shapes = _array_of(shapes, Shape, 'World.shape_union: shapes', 1)
+        count = len(shapes)
+        positions = _array_of(positions, Real, 'World.shape_union: positions', 3, count, True)
+        orientations = _array_of(orientations, Real, 'World.shape_union: orientations', 4, count, True)
+        return self._id(_lib.dem_shape_union_add(self._c, count, shapes, positions, orientations))
 
     def shape_polygon(self, points):
         """Adds a polygon in a planar world: corners in sequence, clockwise or anticlockwise (count x 2, m, 3 to 98). A
@@ -4333,9 +5452,9 @@ class World(WorldBase):
         desc.thickness. For contacts the polygon is a prism of thickness 4/3 sqrt(area/pi), which gives it the volume
         of the sphere with the same area of cross-section. It is an error if sides cross.
         """
-        points = _array(points, Real)
-        count = _count(points, 2, 'points')
-        return self._id(_lib.dem_shape_polygon_add(self._at, count, points))
+        points = _array_of(points, Real, 'World.shape_polygon: points', 2)
+        count = len(points)//2
+        return self._id(_lib.dem_shape_polygon_add(self._c, count, points))
 
     def body(self, material, shape, position, orientation=(1, 0, 0, 0)):
         """Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by orientation (any length
@@ -4343,7 +5462,7 @@ class World(WorldBase):
         DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind) have none with ellipsoids and polyhedra; sieves,
         cones and other surfaces of revolution have none with polygons.
         """
-        return self._id(_lib.dem_body_add(self._at, material, shape, position, orientation))
+        return self._id(_lib.dem_body_add(self._c, material, shape, position, orientation))
 
     def bodies_add(self, material, shape, positions, orientations=None, velocities=None, spins=None,
             scales=None):
@@ -4351,38 +5470,38 @@ class World(WorldBase):
         (count x 4: w, x, y, z; null: not rotated), velocities and spins (count x 3: m/s and rad/s in the world's
         frame; null: at rest), scales (count, > 0: factor on all lengths of the shape; null: 1).
         """
-        positions = _array(positions, Real)
-        count = _count(positions, 3, 'positions')
-        orientations = _array(orientations, Real, 4*count, 'orientations')
-        velocities = _array(velocities, Real, 3*count, 'velocities')
-        spins = _array(spins, Real, 3*count, 'spins')
-        scales = _array(scales, Real, count, 'scales')
-        self._ok(_lib.dem_bodies_add(self._at, material, shape, count, positions, orientations, velocities, spins,
+        positions = _array_of(positions, Real, 'World.bodies_add: positions', 3)
+        count = len(positions)//3
+        orientations = _array_of(orientations, Real, 'World.bodies_add: orientations', 4, count, True)
+        velocities = _array_of(velocities, Real, 'World.bodies_add: velocities', 3, count, True)
+        spins = _array_of(spins, Real, 'World.bodies_add: spins', 3, count, True)
+        scales = _array_of(scales, Real, 'World.bodies_add: scales', 1, count, True)
+        self._ok(_lib.dem_bodies_add(self._c, material, shape, count, positions, orientations, velocities, spins,
             scales))
 
     def bodies_fill(self, material, shape, region, count, seed):
         """Adds up to count bodies of a shape in random orientations, as dem_spheres_fill does. Bounding spheres do not
         overlap, so that every body is free to rotate.
         """
-        return self._filled(_lib.dem_bodies_fill(self._at, material, shape, self._bound(Region.make(region)), count,
-            seed), count, 'dem_bodies_fill')
+        return self._filled(_lib.dem_bodies_fill(self._c, material, shape, self._bound(_struct_of(Region, region,
+            'World.bodies_fill: region')), count, seed), count, 'dem_bodies_fill')
 
     @property
     def body_counts(self):
         """Returns the numbers of bodies."""
-        found = _lib.dem_body_counts_get(self._at)
+        found = _lib.dem_body_counts_get(self._c)
         self._ok(0)
         return self._with(found)
 
     def wall_plane(self, material, point, normal):
         """Adds a plane through point (m). Grains are on the side to which normal points."""
-        return self._id(_lib.dem_wall_plane_add(self._at, material, point, normal))
+        return self._id(_lib.dem_wall_plane_add(self._c, material, point, normal))
 
     def wall_cylinder(self, material, point, axis, radius, inside):
         """Adds an infinite cylinder of radius (m) about an axis through point (m). Grains are inside if inside = 1, and
         outside if inside = 0.
         """
-        return self._id(_lib.dem_wall_cylinder_add(self._at, material, point, axis, radius, inside))
+        return self._id(_lib.dem_wall_cylinder_add(self._c, material, point, axis, radius, inside))
 
     def wall_revolved(self, material, point, axis, radii, heights):
         """Adds a surface of revolution about an axis through point (m): straight pieces between count (2 to DEM_RINGS)
@@ -4392,36 +5511,37 @@ class World(WorldBase):
         part touches one side of it only. Ellipsoids and, with springs, polyhedra touch facets in its place
         (>>tessellate). Polygons have no contact with it; use a profile.
         """
-        radii = _array(radii, Real)
-        count = _count(radii, 1, 'radii')
-        heights = _array(heights, Real, count, 'heights')
-        return self._id(_lib.dem_wall_revolved_add(self._at, material, point, axis, count, radii, heights))
+        radii = _array_of(radii, Real, 'World.wall_revolved: radii', 1)
+        count = len(radii)
+        heights = _array_of(heights, Real, 'World.wall_revolved: heights', 1, count, False)
+        return self._id(_lib.dem_wall_revolved_add(self._c, material, point, axis, count, radii, heights))
 
     def wall_cone(self, material, from_, to, radius_from, radius_to):
         """Adds one piece of a surface of revolution: an open cone between two points (m) with these radii (m, >= 0, not
         both 0). Equal radii make a finite cylinder.
         """
-        return self._id(_lib.dem_wall_cone_add(self._at, material, from_, to, radius_from, radius_to))
+        return self._id(_lib.dem_wall_cone_add(self._c, material, from_, to, radius_from, radius_to))
 
     def wall_profile(self, material, profile, rule=0):
         """Adds a profile: segments in the x-y plane, extruded along z without end. Both sides repel."""
-        profile = self._bound(Profile.make(profile))
-        return self._id(_lib.dem_wall_profile_add(self._at, material, profile, _number(rule, EdgeRule)))
+        profile = self._bound(_struct_of(Profile, profile, 'World.wall_profile: profile'))
+        return self._id(_lib.dem_wall_profile_add(self._c, material, profile, _enum_of(rule, EdgeRule,
+            'World.wall_profile: rule')))
 
     def wall_mesh(self, material, mesh):
         """Adds a triangle mesh. Both sides repel. Meshes that do not move relative to each other act as one surface,
         however it is divided; so do profiles (>>surfaces). A wall is at rest until its motion begins.
         """
-        mesh = self._bound(Mesh.make(mesh))
-        return self._id(_lib.dem_wall_mesh_add(self._at, material, mesh))
+        mesh = self._bound(_struct_of(Mesh, mesh, 'World.wall_mesh: mesh'))
+        return self._id(_lib.dem_wall_mesh_add(self._c, material, mesh))
 
     def wall_grains(self, material, positions, radius, share):
         """Adds a wall of spheres of one radius (m) at positions (count x 3, m), as in [MIL]. All forces are multiplied
         by share (0 < share <= 1), because overlapping spheres represent one surface.
         """
-        positions = _array(positions, Real)
-        count = _count(positions, 3, 'positions')
-        return self._id(_lib.dem_wall_grains_add(self._at, material, count, positions, radius, share))
+        positions = _array_of(positions, Real, 'World.wall_grains: positions', 3)
+        count = len(positions)//3
+        return self._id(_lib.dem_wall_grains_add(self._c, material, count, positions, radius, share))
 
     def wall_sieve(self, material, *, kind=0, point=None, normal=None, along=None, aperture=0, bar=0,
             length=0, thickness=0, lift=0, staggered=0, radius=0, model=0, clearance=0):
@@ -4448,7 +5568,7 @@ class World(WorldBase):
         desc = SieveDesc(kind=kind, point=point, normal=normal, along=along, aperture=aperture, bar=bar,
             length=length, thickness=thickness, lift=lift, staggered=staggered, radius=radius, model=model,
             clearance=clearance)
-        return self._id(_lib.dem_wall_sieve_add(self._at, material, desc))
+        return self._id(_lib.dem_wall_sieve_add(self._c, material, desc))
 
     def sieve_blinded(self, sieve, speed=0):
         """Returns how many grains, clusters included, blind a sieve. Such a grain is stuck in a hole: it touches the
@@ -4456,7 +5576,7 @@ class World(WorldBase):
         Grains faster than speed (m/s, relative to the sieve; 0 means any) do not count. Reduced holes never blind.
         Returns -1 on error, also while there is no list of contacts (see dem_contacts_get).
         """
-        return self._number(_lib.dem_sieve_blinded_get(self._at, sieve, speed))
+        return self._number(_lib.dem_sieve_blinded_get(self._c, sieve, speed))
 
     def joint(self, *, kind=0, motor=0, a=None, b=None, wall=None, collide=0, point=None, axis=None, speed=0,
             torque=0):
@@ -4477,7 +5597,8 @@ class World(WorldBase):
         """
         desc = JointDesc(kind=kind, motor=motor, a=a, b=b, wall=wall, collide=collide, point=point, axis=axis,
             speed=speed, torque=torque)
-        return self._id(_lib.dem_joint_add(self._at, desc))
+        desc = self._bound(desc)
+        return self._id(_lib.dem_joint_add(self._c, desc))
 
     def feed(self, *, material=None, class_count=0, radius=(), amount=(), limited=0, by_mass=0, rate=0,
             start=0, end=0, box=None, round=0, velocity=None, spread=0, seed=0, inside=None, inside_user=None,
@@ -4507,7 +5628,7 @@ class World(WorldBase):
             by_mass=by_mass, rate=rate, start=start, end=end, box=box, round=round, velocity=velocity, spread=spread,
             seed=seed, inside=inside, inside_user=inside_user, materials=materials, shapes=shapes, sizes=sizes)
         desc = self._bound(desc)
-        return self._id(_lib.dem_feed_add(self._at, desc))
+        return self._id(_lib.dem_feed_add(self._c, desc))
 
     def outlet(self, *, frame=None, box=None, beyond=0, wanted_min=0, wanted_max=0, class_count=0, radius=(),
             material=None, keep=0, residence_bin=0):
@@ -4526,7 +5647,8 @@ class World(WorldBase):
         """
         desc = OutletDesc(frame=frame, box=box, beyond=beyond, wanted_min=wanted_min, wanted_max=wanted_max,
             class_count=class_count, radius=radius, material=material, keep=keep, residence_bin=residence_bin)
-        return self._id(_lib.dem_outlet_add(self._at, desc))
+        desc = self._bound(desc)
+        return self._id(_lib.dem_outlet_add(self._c, desc))
 
     @property
     def step_advice(self):
@@ -4537,7 +5659,7 @@ class World(WorldBase):
         DEM_RESPONSE_IMPULSES, where contacts have no duration.
         """
         advice = Advice()
-        self._ok(_lib.dem_step_advice_get(self._at, advice))
+        self._ok(_lib.dem_step_advice_get(self._c, advice))
         self._with(advice)
         return advice
 
@@ -4555,14 +5677,14 @@ class World(WorldBase):
         """
         capacity = 64
         findings = (Finding*max(capacity, 1))()
-        count = self._number(_lib.dem_world_check(self._at, ctypes.cast(findings, ctypes.POINTER(Finding)), capacity))
+        count = self._number(_lib.dem_world_check(self._c, ctypes.cast(findings, ctypes.POINTER(Finding)), capacity))
         return list(findings[:min(count, len(findings))])
 
     def check_print(self, out=None):
         """Prints the first 16 findings of dem_world_check, one per line (nothing if there are none), and returns how
         many it found.
         """
-        return self._print(_lib.dem_world_check_print, out, self._at)
+        return self._print(_lib.dem_world_check_print, out, self._c)
 
     def step(self, steps):
         """Advances the world by `steps` time steps (>= 0), or to the first step that fails. The error message names that
@@ -4581,23 +5703,23 @@ class World(WorldBase):
         is complete: the next call completes it as its first step, here or in a world that has read a checkpoint
         written meanwhile. The bits are those of a run without the interruption.
         """
-        self._ok(self._run(_lib.dem_world_step, self._at, steps) if self._context.kept else
-            _lib.dem_world_step(self._at, steps))
+        self._ok(self._run(_lib.dem_world_step, self._c, steps) if self._context.kept or self._context.runs else
+            _lib.dem_world_step(self._c, steps))
 
     def run(self, seconds, progress=None):
         """Advances the world by `seconds` of simulated time (>= 0), to the nearest step. Consecutive calls add up:
         twenty of 0.05 s end within half a step of 1 s, because each counts from where the previous one should have
         ended (unless other steps were taken in between). progress: or null. Errors as for dem_world_step.
         """
-        progress = self._callback(ProgressFn, progress or _go_on)
-        self._ok(self._run(_lib.dem_world_run, self._at, seconds, progress, None))
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
+        self._ok(self._run(_lib.dem_world_run, self._c, seconds, progress, None))
 
     def run_to(self, time, progress=None):
         """Advances the world to a time of its clock, s, not before the present one. Otherwise as dem_world_run. A
         program that has read a checkpoint can thus run to the same end.
         """
-        progress = self._callback(ProgressFn, progress or _go_on)
-        self._ok(self._run(_lib.dem_world_run_to, self._at, time, progress, None))
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
+        self._ok(self._run(_lib.dem_world_run_to, self._c, time, progress, None))
 
     def settle(self, seconds, speed=0, progress=None):
         """Advances the world until its bodies are at rest, for at most `seconds` of simulated time (> 0). At rest: at
@@ -4609,15 +5731,15 @@ class World(WorldBase):
         DEM_ERROR_ARGUMENT for a feed with neither `limited` nor `end`, and DEM_ERROR_STOPPED if the time is up: the
         message gives the speeds, or the feed that is not done, and the state is intact.
         """
-        progress = self._callback(ProgressFn, progress or _go_on)
-        self._ok(self._run(_lib.dem_world_settle, self._at, seconds, speed, progress, None))
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
+        self._ok(self._run(_lib.dem_world_settle, self._c, seconds, speed, progress, None))
 
     def gravity_set(self, gravity):
         """Sets gravity, m/s2 (components up to 1e15), from now on: for a mill seen from its shell, or a table that is
         tilted. Any number of calls between two steps is allowed. A planar world ignores z. dem_world_desc_get returns
         it, checkpoints store it, and slabs take it over when they are created.
         """
-        self._ok(_lib.dem_world_gravity_set(self._at, gravity))
+        self._ok(_lib.dem_world_gravity_set(self._c, gravity))
 
     def cell_set(self, *, rate=None, shear=0, stress=None, rate_most=None):
         """Deforms the cell from now on, for tests of materials without walls. The centre of the domain stays in place.
@@ -4639,13 +5761,13 @@ class World(WorldBase):
             must be 0; 0: the axis follows `rate`
         """
         desc = CellDesc(rate=rate, shear=shear, stress=stress, rate_most=rate_most)
-        self._ok(_lib.dem_cell_set(self._at, desc))
+        self._ok(_lib.dem_cell_set(self._c, desc))
 
     @property
     def cell_state(self):
         """Writes the state of the cell to state."""
         state = CellState()
-        self._ok(_lib.dem_cell_state_get(self._at, state))
+        self._ok(_lib.dem_cell_state_get(self._c, state))
         self._with(state)
         return state
 
@@ -4654,19 +5776,19 @@ class World(WorldBase):
         DEM_RESPONSE_IMPULSES. Contact history stays. Checkpoints store the step. If it is too large, the next
         dem_world_step returns DEM_ERROR_TIME_STEP.
         """
-        self._ok(_lib.dem_world_dt_set(self._at, dt))
+        self._ok(_lib.dem_world_dt_set(self._c, dt))
 
     @property
     def time(self):
         """Returns the simulated time, s."""
-        found = _lib.dem_world_time_get(self._at)
+        found = _lib.dem_world_time_get(self._c)
         self._ok(0)
         return found
 
     @property
     def steps(self):
         """Returns the number of complete steps."""
-        found = _lib.dem_world_steps_get(self._at)
+        found = _lib.dem_world_steps_get(self._c)
         self._ok(0)
         return found
 
@@ -4675,33 +5797,33 @@ class World(WorldBase):
         """Returns a 64-bit digest of the state: time, positions, orientations, velocities, spins, walls, joints, feeds,
         outlets and contact history. Equal runs have equal digests.
         """
-        found = _lib.dem_world_hash_get(self._at)
+        found = _lib.dem_world_hash_get(self._c)
         self._ok(0)
         return found
 
     @property
     def counters(self):
         """Returns the counters."""
-        found = _lib.dem_counters_get(self._at)
+        found = _lib.dem_counters_get(self._c)
         self._ok(0)
         return self._with(found)
 
     def overlap_max_reset(self):
         """Sets the counter overlap_max to 0, for instance after a scene has been built."""
-        _lib.dem_overlap_max_reset(self._at)
+        _lib.dem_overlap_max_reset(self._c)
         self._ok(0)
 
     @property
     def ledger(self):
         """Returns the ledger."""
-        found = _lib.dem_ledger_get(self._at)
+        found = _lib.dem_ledger_get(self._c)
         self._ok(0)
         return self._with(found)
 
     @property
     def totals(self):
         """Computes the totals in one pass over the bodies."""
-        found = _lib.dem_totals_get(self._at)
+        found = _lib.dem_totals_get(self._c)
         self._ok(0)
         return self._with(found)
 
@@ -4709,25 +5831,25 @@ class World(WorldBase):
         """Returns the height of the centre of mass above the origin, m: against gravity, or along z if there is none.
         user: not used, or null, as in the next three.
         """
-        found = _lib.dem_observer_height(self._at, None)
+        found = _lib.dem_observer_height(self._c, None)
         self._ok(0)
         return found
 
     def observer_kinetic(self):
         """Returns the kinetic energy of all bodies that can move, rotation included, J."""
-        found = _lib.dem_observer_kinetic(self._at, None)
+        found = _lib.dem_observer_kinetic(self._c, None)
         self._ok(0)
         return found
 
     def observer_contacts(self):
         """Returns the mean number of contacts per body, walls included. A contact of two bodies counts for both."""
-        found = _lib.dem_observer_contacts(self._at, None)
+        found = _lib.dem_observer_contacts(self._c, None)
         self._ok(0)
         return found
 
     def observer_walls(self):
         """Returns the sum over all walls of the magnitude of the force on each, N."""
-        found = _lib.dem_observer_walls(self._at, None)
+        found = _lib.dem_observer_walls(self._c, None)
         self._ok(0)
         return found
 
@@ -4760,7 +5882,7 @@ class World(WorldBase):
         desc = TrialsDesc(duration=duration, budget=budget, tolerance=tolerance, seeds=seeds,
             observable_count=observable_count, observables=observables, progress=progress, user=user)
         desc = self._bound(desc)
-        self._ok(self._run(_lib.dem_trials_run, self._at, desc, trials))
+        self._ok(self._run(_lib.dem_trials_run, self._c, desc, trials))
         return trials
 
     @property
@@ -4773,11 +5895,11 @@ class World(WorldBase):
         materials have changed, call dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the
         list. Returns -1 if there is no list: before the first step, and after bodies or walls have changed.
         """
-        capacity = self._number(_lib.dem_contacts_get(self._at, None, 0))
+        capacity = self._number(_lib.dem_contacts_get(self._c, None, 0))
         out = (ContactInfo*max(capacity, 1))()
-        count = self._number(_lib.dem_contacts_get(self._at, ctypes.cast(out, ctypes.POINTER(ContactInfo)), capacity))
+        count = self._number(_lib.dem_contacts_get(self._c, ctypes.cast(out, ctypes.POINTER(ContactInfo)), capacity))
         array = (out._type_*count).from_buffer(out)
-        return array
+        return Structs(array)
 
     def contacts_each(self, fn=None):
         """Calls `fn` for every contact, those with walls included, and returns their number. With a law that has a range
@@ -4785,7 +5907,7 @@ class World(WorldBase):
         step would fail. user: or null.
         """
         fn = self._callback(ContactFn, fn)
-        return self._number(_lib.dem_contacts_each(self._at, fn, None))
+        return self._number(_lib.dem_contacts_each(self._c, fn, None))
 
     def bonds_make(self, gap, make=None):
         """Calls `make` for every pair of bodies (no walls) with a gap below `gap`, and returns their number, so that
@@ -4794,7 +5916,7 @@ class World(WorldBase):
         Errors as for dem_contacts_each.
         """
         make = self._callback(ContactFn, make)
-        return self._number(_lib.dem_bonds_make(self._at, gap, make, None))
+        return self._number(_lib.dem_bonds_make(self._c, gap, make, None))
 
     @property
     def candidates(self):
@@ -4802,16 +5924,16 @@ class World(WorldBase):
         of them, and returns their number. `out` or null. Returns -1 if bodies or walls have changed since the last
         step.
         """
-        capacity = self._number(_lib.dem_candidates_get(self._at, None, 0))
+        capacity = self._number(_lib.dem_candidates_get(self._c, None, 0))
         out = ((ctypes.c_uint32*2)*max(capacity, 1))()
-        count = self._number(_lib.dem_candidates_get(self._at, ctypes.cast(out, ctypes.POINTER(ctypes.c_uint32)),
+        count = self._number(_lib.dem_candidates_get(self._c, ctypes.cast(out, ctypes.POINTER(ctypes.c_uint32)),
             capacity))
         array = (out._type_*count).from_buffer(out)
         return array
 
     def candidates_rebuild(self):
         """Rebuilds the neighbour list now, for tests and analysis. A run does so automatically."""
-        self._ok(_lib.dem_candidates_rebuild(self._at))
+        self._ok(_lib.dem_candidates_rebuild(self._c))
 
     def events_record(self, *, function=None, user=None, begins=0):
         """Starts to record contacts; needs desc.ledger. If they are recorded already, replaces the function and keeps
@@ -4827,25 +5949,25 @@ class World(WorldBase):
         """
         desc = EventsDesc(function=function, user=user, begins=begins)
         desc = self._bound(desc)
-        self._ok(_lib.dem_events_record(self._at, desc))
+        self._ok(_lib.dem_events_record(self._c, desc))
 
     def events_stop(self):
         """Ends the recording and discards its records."""
-        self._ok(_lib.dem_events_stop(self._at))
+        self._ok(_lib.dem_events_stop(self._c))
 
     def events_open_each(self, fn=None):
         """Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn and user: or null.
         Returns -1 if contacts are not recorded.
         """
         fn = self._callback(EventFn, fn)
-        return self._number(_lib.dem_events_open_each(self._at, fn, None))
+        return self._number(_lib.dem_events_open_each(self._c, fn, None))
 
     def impacts(self, a, b):
         """Computes the statistics of contacts between two materials, walls included; material id 0 means any. An error
         if contacts are not recorded.
         """
         impacts = Impacts()
-        self._ok(_lib.dem_impacts_get(self._at, a, b, impacts))
+        self._ok(_lib.dem_impacts_get(self._c, a, b, impacts))
         self._with(impacts)
         return impacts
 
@@ -4853,7 +5975,7 @@ class World(WorldBase):
         """Writes the spectra of all pairs of materials that have touched to a CSV file. A line per bin that is not
         empty: material_a, material_b, from, to (J), impacts, losses (both 1/s), power (W).
         """
-        self._ok(_lib.dem_impacts_csv_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_impacts_csv_write(self._c, _text_of(path, 'World.impacts_csv_write: path')))
 
     @property
     def stress(self):
@@ -4862,7 +5984,7 @@ class World(WorldBase):
         changed since the last step; then call dem_contacts_each first (see dem_contacts_get).
         """
         stress = Stress()
-        self._ok(_lib.dem_stress_get(self._at, stress))
+        self._ok(_lib.dem_stress_get(self._c, stress))
         self._with(stress)
         return stress
 
@@ -4888,7 +6010,8 @@ class World(WorldBase):
         desc = FieldDesc(box=box, cells=cells, start=start, end=end, interval=interval, material=material,
             radius_min=radius_min, radius_max=radius_max, stress=stress, width=width, group=group, variance=variance,
             bodies=bodies)
-        return self._id(_lib.dem_field_add(self._at, desc))
+        desc = self._bound(desc)
+        return self._id(_lib.dem_field_add(self._c, desc))
 
     def mixing(self, *, box=None, cells=(), material=None, radius_min=0, radius_max=0, centre=None,
             axis=None):
@@ -4902,7 +6025,8 @@ class World(WorldBase):
         mixing = Mixing()
         desc = MixingDesc(box=box, cells=cells, material=material, radius_min=radius_min, radius_max=radius_max,
             centre=centre, axis=axis)
-        self._ok(_lib.dem_mixing_get(self._at, desc, mixing))
+        desc = self._bound(desc)
+        self._ok(_lib.dem_mixing_get(self._c, desc, mixing))
         self._with(mixing)
         return mixing
 
@@ -4915,7 +6039,7 @@ class World(WorldBase):
         with fewer than four points.
         """
         repose = Repose()
-        self._ok(_lib.dem_repose_heap_get(self._at, box, repose))
+        self._ok(_lib.dem_repose_heap_get(self._c, box, repose))
         self._with(repose)
         return repose
 
@@ -4926,7 +6050,7 @@ class World(WorldBase):
         surface. `box` and errors as above.
         """
         repose = Repose()
-        self._ok(_lib.dem_repose_drum_get(self._at, box, axis, repose))
+        self._ok(_lib.dem_repose_drum_get(self._c, box, axis, repose))
         self._with(repose)
         return repose
 
@@ -4939,17 +6063,18 @@ class World(WorldBase):
         """
         mesh = Mesh()
         health = MeshHealth()
-        self._ok(_lib.dem_mesh_read(self._at, os.fsencode(path), mesh, health))
+        self._ok(_lib.dem_mesh_read(self._c, _text_of(path, 'World.mesh_read: path'), mesh, health))
         mesh = self._taken(mesh, _lib.dem_mesh_free)
         self._with(health)
         return mesh, health
 
     def mesh_parse(self, name, data):
         """Reads triangles from memory, `size` bytes at `data`, as dem_mesh_read does. name: for error messages; or null."""
-        data = data.encode() if isinstance(data, str) else bytes(data)
+        data = _data_of(data, 'World.mesh_parse: data')
         mesh = Mesh()
         health = MeshHealth()
-        self._ok(_lib.dem_mesh_parse(self._at, name.encode(), data, len(data), mesh, health))
+        self._ok(_lib.dem_mesh_parse(self._c, _text_of(name, 'World.mesh_parse: name'), data, len(data), mesh,
+            health))
         mesh = self._taken(mesh, _lib.dem_mesh_free)
         self._with(health)
         return mesh, health
@@ -4962,7 +6087,8 @@ class World(WorldBase):
         """
         mesh = Mesh()
         health = MeshHealth()
-        self._ok(_lib.dem_mesh_part_read(self._at, os.fsencode(path), part.encode(), mesh, health))
+        self._ok(_lib.dem_mesh_part_read(self._c, _text_of(path, 'World.mesh_part_read: path'), _text_of(part,
+            'World.mesh_part_read: part'), mesh, health))
         mesh = self._taken(mesh, _lib.dem_mesh_free)
         self._with(health)
         return mesh, health
@@ -4972,7 +6098,7 @@ class World(WorldBase):
         `to` (m, components up to 1e15). A rotation of zeros is none; any other length is normalised. Call it before
         the mesh becomes a wall or a shape.
         """
-        self._ok(_lib.dem_mesh_place(self._at, mesh, scale, rotation, to))
+        self._ok(_lib.dem_mesh_place(self._c, _struct_of(Mesh, mesh, 'World.mesh_place: mesh'), scale, rotation, to))
 
     def mesh_spheres(self, mesh, count):
         """Approximates a closed mesh by `count` spheres (1 to 1000), for a cluster: writes positions (count x 3) and
@@ -4984,11 +6110,11 @@ class World(WorldBase):
         triangles do not pair, a surface with one side only, shells that cross or that face the same way as the shell
         around them, a mesh too thin for any sphere.
         """
-        mesh = self._bound(Mesh.make(mesh))
-        positions = ((Real*3)*max(count, 1))()
-        radii = (Real*max(count, 1))()
+        mesh = self._bound(_struct_of(Mesh, mesh, 'World.mesh_spheres: mesh'))
+        positions = ((Real*3)*_size_of(count, 'World.mesh_spheres: count'))()
+        radii = (Real*_size_of(count, 'World.mesh_spheres: count'))()
         fit = SpheresFit()
-        self._ok(_lib.dem_mesh_spheres(self._at, mesh, count, ctypes.cast(positions, ctypes.POINTER(Real)),
+        self._ok(_lib.dem_mesh_spheres(self._c, mesh, count, ctypes.cast(positions, ctypes.POINTER(Real)),
             ctypes.cast(radii, ctypes.POINTER(Real)), fit))
         self._with(fit)
         return positions, radii, fit
@@ -4998,11 +6124,11 @@ class World(WorldBase):
         material and motion. scale: m per unit of length of the file, > 0; 0: 1. walls: receives `count` ids; or null.
         If one part fails, no wall is added.
         """
-        parts = _array([self._bound(WallPart.make(item)) for item in parts], WallPart)
-        count = _count(parts, 1, 'parts')
+        parts = _array_of(_parts_of(parts, self, 'World.wall_parts: parts'), WallPart, 'World.wall_parts: parts', 1)
+        count = len(parts)
         walls = (Wall*max(count, 1))()
-        self._ok(_lib.dem_wall_parts_add(self._at, os.fsencode(path), scale, count, parts, ctypes.cast(walls,
-            ctypes.POINTER(Wall))))
+        self._ok(_lib.dem_wall_parts_add(self._c, _text_of(path, 'World.wall_parts: path'), scale, count, parts,
+            ctypes.cast(walls, ctypes.POINTER(Wall))))
         walls = [item.of(self) for item in walls]
         return walls
 
@@ -5011,15 +6137,16 @@ class World(WorldBase):
         per vertex, two corners counted from 1 per segment. Free with dem_profile_free.
         """
         profile = Profile()
-        self._ok(_lib.dem_profile_read(self._at, os.fsencode(path), profile))
+        self._ok(_lib.dem_profile_read(self._c, _text_of(path, 'World.profile_read: path'), profile))
         profile = self._taken(profile, _lib.dem_profile_free)
         return profile
 
     def profile_parse(self, name, data):
         """Reads the segments of a profile from memory, `size` bytes at `data`. name: for error messages; or null."""
-        data = data.encode() if isinstance(data, str) else bytes(data)
+        data = _data_of(data, 'World.profile_parse: data')
         profile = Profile()
-        self._ok(_lib.dem_profile_parse(self._at, name.encode(), data, len(data), profile))
+        self._ok(_lib.dem_profile_parse(self._c, _text_of(name, 'World.profile_parse: name'), data, len(data),
+            profile))
         profile = self._taken(profile, _lib.dem_profile_free)
         return profile
 
@@ -5039,15 +6166,15 @@ class World(WorldBase):
         Free with dem_grains_free.
         """
         grains = Grains()
-        self._ok(_lib.dem_grains_read(self._at, os.fsencode(path), grains))
+        self._ok(_lib.dem_grains_read(self._c, _text_of(path, 'World.grains_read: path'), grains))
         grains = self._taken(grains, _lib.dem_grains_free)
         return grains
 
     def grains_parse(self, name, data):
         """Reads grains from memory, `size` bytes at `data`, as dem_grains_read does. name: for error messages; or null."""
-        data = data.encode() if isinstance(data, str) else bytes(data)
+        data = _data_of(data, 'World.grains_parse: data')
         grains = Grains()
-        self._ok(_lib.dem_grains_parse(self._at, name.encode(), data, len(data), grains))
+        self._ok(_lib.dem_grains_parse(self._c, _text_of(name, 'World.grains_parse: name'), data, len(data), grains))
         grains = self._taken(grains, _lib.dem_grains_free)
         return grains
 
@@ -5055,8 +6182,8 @@ class World(WorldBase):
         """Adds all grains as spheres of one material or, if its id is 0, of the materials whose numbers the file gives.
         If one grain has a bad value, none is added.
         """
-        grains = self._bound(Grains.make(grains))
-        self._ok(_lib.dem_grains_add(self._at, material, grains))
+        grains = self._bound(_struct_of(Grains, grains, 'World.grains: grains'))
+        self._ok(_lib.dem_grains_add(self._c, material, grains))
 
     def vtp_write(self, path):
         """Writes the bodies for ParaView (VTP): points with radius, velocity, spin, id, material and body_reals, with
@@ -5065,25 +6192,25 @@ class World(WorldBase):
         semi_axes (m). To draw them in ParaView: Glyph, a sphere of radius 1, scaled by semi_axes, rotated by
         orientation (quaternion).
         """
-        self._ok(_lib.dem_vtp_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_vtp_write(self._c, _text_of(path, 'World.vtp_write: path')))
 
     def vtk_write(self, path):
         """Writes the same as a legacy VTK file, binary."""
-        self._ok(_lib.dem_vtk_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_vtk_write(self._c, _text_of(path, 'World.vtk_write: path')))
 
     def xyz_write(self, path):
         """Writes the bodies for OVITO and ASE (extended XYZ): a chemical element that numbers the material (H: 1, He:
         2), position, radius, velocity, body_reals and id. If bodies have orientations, also the orientation (x y z w)
         and semi-axes. The domain becomes the lattice.
         """
-        self._ok(_lib.dem_xyz_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_xyz_write(self._c, _text_of(path, 'World.xyz_write: path')))
 
     def contacts_vtp_write(self, path):
         """Writes the contacts for ParaView (VTP), to show bonds, bridges and force chains: lines from centre to centre
         (with a wall: to the contact point), with force (N, on a), overlap (m), wall (id, 0: none) and the contact
         history under its names. Computes forces first if the scene has changed.
         """
-        self._ok(_lib.dem_contacts_vtp_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_contacts_vtp_write(self._c, _text_of(path, 'World.contacts_vtp_write: path')))
 
     def walls_vtp_write(self, path, z0, z1):
         """Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose (VTP), with the
@@ -5091,26 +6218,26 @@ class World(WorldBase):
         (dem_events_record), the column `sliding` has the work of sliding on the facet or segment of each triangle, J,
         as returned by dem_wall_wear_facets_get. It is 0 on surfaces of revolution.
         """
-        self._ok(_lib.dem_walls_vtp_write(self._at, os.fsencode(path), z0, z1))
+        self._ok(_lib.dem_walls_vtp_write(self._c, _text_of(path, 'World.walls_vtp_write: path'), z0, z1))
 
     def surfaces_vtp_write(self, path):
         """Writes the surfaces of all bodies as polygons (VTP), with velocity (of each corner), id, material and
         body_reals. Polyhedra are drawn by their faces, round bodies by facets.
         """
-        self._ok(_lib.dem_surfaces_vtp_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_surfaces_vtp_write(self._c, _text_of(path, 'World.surfaces_vtp_write: path')))
 
     def bodies_csv_write(self, path):
         """Writes the bodies: id, number of the material, (bounding) radius, position, velocity, spin and body_reals. If
         a field averages bodies (dem_field_desc.bodies), also the samples, and mean and variance of velocity, spin and
         force. dem_grains_read reads such a table.
         """
-        self._ok(_lib.dem_bodies_csv_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_bodies_csv_write(self._c, _text_of(path, 'World.bodies_csv_write: path')))
 
     def contacts_csv_write(self, path):
         """Writes the contacts: ids of a and b (-1: a wall), wall (0: none), point (m), normal (from a to b), overlap (m)
         and force (N, on a). Computes forces first if the scene has changed.
         """
-        self._ok(_lib.dem_contacts_csv_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_contacts_csv_write(self._c, _text_of(path, 'World.contacts_csv_write: path')))
 
     def replay(self, path, *, title=None, number=None, number_fn=None, user=None, resolution=0, interval=0,
             contacts=0):
@@ -5134,14 +6261,15 @@ class World(WorldBase):
         desc = ReplayDesc(title=title, number=number, number_fn=number_fn, user=user, resolution=resolution,
             interval=interval, contacts=contacts)
         desc = self._bound(desc)
-        return Replay(self._pointer(_lib.dem_replay_open(self._at, os.fsencode(path), desc)), self, path)
+        return Replay(self._pointer(_lib.dem_replay_open(self._c, _text_of(path, 'World.replay: path'), desc)), self,
+            path)
 
     def checkpoint_write(self, path):
         """Writes a checkpoint: the whole state, with bodies, walls, contact history, neighbour list, ledger, fields,
         counters, and what each scheduled output has written. An error if a body is not at a finite position and
         velocity; then an existing file stays.
         """
-        self._ok(_lib.dem_checkpoint_write(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_checkpoint_write(self._c, _text_of(path, 'World.checkpoint_write: path')))
 
     def checkpoint_read(self, path):
         """Reads a checkpoint and replaces the state of the world, which then continues bit for bit. The world must have
@@ -5151,7 +6279,7 @@ class World(WorldBase):
         damaged, or of another version, precision, DEM_DOMAIN_BODIES or memory layout; a file of another scene, for
         which the message names the first field that differs, with both values.
         """
-        self._ok(_lib.dem_checkpoint_read(self._at, os.fsencode(path)))
+        self._ok(_lib.dem_checkpoint_read(self._c, _text_of(path, 'World.checkpoint_read: path')))
 
     def checkpoint_read_changed(self, path, allowed):
         """The same for a world that differs from the one that wrote the file. allowed: words, each the name of a field
@@ -5164,14 +6292,15 @@ class World(WorldBase):
         as `inserted` and the present elastic energy as `growth`. Otherwise `growth` receives the energy that springs
         hold more than in the file.
         """
-        self._ok(_lib.dem_checkpoint_read_changed(self._at, os.fsencode(path), allowed.encode()))
+        self._ok(_lib.dem_checkpoint_read_changed(self._c, _text_of(path, 'World.checkpoint_read_changed: path'),
+            _text_of(allowed, 'World.checkpoint_read_changed: allowed')))
 
     @property
     def checkpoint_changes(self):
         """Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as "dt: 1e-05
         there, 2e-05 here", or "".
         """
-        return (_lib.dem_checkpoint_changes_get(self._at) or b'').decode()
+        return (_lib.dem_checkpoint_changes_get(self._c) or b'').decode()
 
     def output(self, *, kind=0, path=None, interval=0, start=0, end=0, wall=None, columns=None, values=None,
             function=None, user=None, mixing=None, field=None, z0=0, z1=0, outlet=None):
@@ -5208,13 +6337,14 @@ class World(WorldBase):
         desc = OutputDesc(kind=kind, path=path, interval=interval, start=start, end=end, wall=wall, columns=columns,
             values=values, function=function, user=user, mixing=mixing, field=field, z0=z0, z1=z1, outlet=outlet)
         desc = self._bound(desc)
-        return self._id(_lib.dem_output_add(self._at, desc))
+        return self._id(_lib.dem_output_add(self._c, desc))
 
     def output_every(self, kind, path, interval):
         """Adds an output by kind, path and interval (s) alone: dem_output_every_add(world, DEM_OUTPUT_VTP,
         "grains_####.vtp", 0.01).
         """
-        return self._id(_lib.dem_output_every_add(self._at, _number(kind, OutputKind), os.fsencode(path), interval))
+        return self._id(_lib.dem_output_every_add(self._c, _enum_of(kind, OutputKind, 'World.output_every: kind'),
+            _text_of(path, 'World.output_every: path'), interval))
 
     def slabs(self, *, axis=0, count=0, first=0, local=0, transport=None, balance=0, balance_interval=0):
         """Creates slabs from a world: copies its grains to them, with everything a step needs. The world stays as it is,
@@ -5234,7 +6364,7 @@ class World(WorldBase):
         """
         desc = SlabsDesc(axis=axis, count=count, first=first, local=local, transport=transport, balance=balance,
             balance_interval=balance_interval)
-        return Slabs(self._pointer(_lib.dem_slabs_create(self._at, desc)), self)
+        return Slabs(self._pointer(_lib.dem_slabs_create(self._c, desc)), self)
 
     def effects(self, budget=0):
         """Writes for every effect whether it is off, idle or active, and returns their number. It finds a material with
@@ -5247,21 +6377,21 @@ class World(WorldBase):
         run.
         """
         effects = (Effect*max(EFFECTS, 1))()
-        count = self._number(_lib.dem_effects_get(self._at, budget, ctypes.cast(effects, ctypes.POINTER(Effect))))
+        count = self._number(_lib.dem_effects_get(self._c, budget, ctypes.cast(effects, ctypes.POINTER(Effect))))
         return list(effects[:min(count, len(effects))])
 
     def effects_print(self, budget=0, out=None):
         """Prints the effects as lines of text. A share outside -0.1 to 1, or with an error above 0.1, is printed as "too
         noisy".
         """
-        return self._print(_lib.dem_effects_print, out, self._at, budget)
+        return self._print(_lib.dem_effects_print, out, self._c, budget)
 
     def report(self, out=None):
         """Prints the report: bodies, time step and what limits it, contact detection, laws and effects, what the scene
         contains but has not happened, the largest overlap, pairs of materials, loads of walls, joints, feeds,
         outlets, and the ledger. It calls a user-defined force field and desc.growth once per body.
         """
-        return self._print(_lib.dem_world_report, out, self._at)
+        return self._print(_lib.dem_world_report, out, self._c)
 
 
 class Replay(ReplayBase):
@@ -5270,14 +6400,14 @@ class Replay(ReplayBase):
 
     def frame_write(self):
         """Writes the present state as a frame. 30 to 300 frames make a good replay."""
-        self._ok(_lib.dem_replay_frame_write(self._at))
+        self._ok(_lib.dem_replay_frame_write(self._c))
 
     def value_set(self, name, value):
         """Sets a value of the next frame, which the replay plots against time. name: 1 to 63 characters, at most 16
         different names; it ends with the unit in brackets, and values with the same unit share a scale. A value that
         is not finite leaves a gap.
         """
-        self._ok(_lib.dem_replay_value_set(self._at, name.encode(), value))
+        self._ok(_lib.dem_replay_value_set(self._c, _text_of(name, 'Replay.value_set: name'), value))
 
 
 class Slabs(SlabsBase):
@@ -5287,8 +6417,8 @@ class Slabs(SlabsBase):
         """Advances all slabs by `steps` time steps (>= 0). Errors as for dem_world_step; DEM_ERROR_STOPPED also if the
         transport has failed.
         """
-        self._ok(self._run(_lib.dem_slabs_step, self._at, steps) if self._context.kept else
-            _lib.dem_slabs_step(self._at, steps))
+        self._ok(self._run(_lib.dem_slabs_step, self._c, steps) if self._context.kept or self._context.runs else
+            _lib.dem_slabs_step(self._c, steps))
 
     def collect(self, world):
         """Copies the state of all slabs into a world of the same scene, in every process: grains, contact history,
@@ -5296,29 +6426,29 @@ class Slabs(SlabsBase):
         divided into slabs again, without effect on these slabs. It has no neighbour list until
         dem_candidates_rebuild; after that it continues as the slabs would.
         """
-        self._ok(_lib.dem_slabs_collect(self._at, world._at))
+        self._ok(_lib.dem_slabs_collect(self._c, _handle_of(world, World, 'Slabs.collect: world')))
 
     def loads_reset(self):
         """Sets the time integrals of wall loads and the largest overlap to 0, in this process's slabs."""
-        _lib.dem_slabs_loads_reset(self._at)
+        _lib.dem_slabs_loads_reset(self._c)
         self._ok(0)
 
     @property
     def error(self):
         """Returns the error message of the last failed call on these slabs, or ""."""
-        return (_lib.dem_slabs_error_get(self._at) or b'').decode()
+        return (_lib.dem_slabs_error_get(self._c) or b'').decode()
 
     def slab(self, index):
         """Describes one slab of this process; index: first to first + local - 1."""
         slab = Slab()
-        self._ok(_lib.dem_slab_get(self._at, index, slab))
+        self._ok(_lib.dem_slab_get(self._c, index, slab))
         self._with(slab)
         return slab
 
     @property
     def counters(self):
         """Returns the counters of slabs."""
-        found = _lib.dem_slabs_counters_get(self._at)
+        found = _lib.dem_slabs_counters_get(self._c)
         self._ok(0)
         return self._with(found)
 
@@ -5469,233 +6599,357 @@ def law_twist(c, memory, f):
 
 def result_name(result):
     """Returns a short text for a result, such as "out of memory"."""
-    return (_lib.dem_result_name_get(_number(result, Result)) or b'').decode()
+    return (_lib.dem_result_name_get(_enum_of(result, Result, 'dem.result_name: result')) or b'').decode()
 
 
 def ellipsoids_contact(a, b, lambda_=0):
     """Returns the contact of two ellipsoids. lambda is an initial guess, or 0."""
-    a = Ellipsoid.make(a)
-    b = Ellipsoid.make(b)
+    a = _struct_of(Ellipsoid, a, 'dem.ellipsoids_contact: a')
+    b = _struct_of(Ellipsoid, b, 'dem.ellipsoids_contact: b')
     return _lib.dem_ellipsoids_contact_get(a, b, lambda_)
 
 
 def trials_print(trials, out=None):
     """Prints the trials as a table, and the advice."""
-    trials = Trials.make(trials)
+    trials = _struct_of(Trials, trials, 'dem.trials_print: trials')
     return Handle()._print(_lib.dem_trials_print, out, trials)
 
 
 _FUNCTIONS = [
-    ('dem_world_create_checked', ctypes.c_void_p, [ctypes.POINTER(WorldDesc), ctypes.c_int, ctypes.c_size_t]),
-    ('dem_quat_about', Quat, [Vec3, Real]),
-    ('dempy_quat_multiply', Quat, [Quat, Quat]),
-    ('dempy_quat_rotate', Vec3, [Quat, Vec3]),
-    ('dempy_quat_unrotate', Vec3, [Quat, Vec3]),
-    ('dempy_memory_rotate', Vec3, [ctypes.POINTER(Contact), Vec3]),
-    ('dempy_law_load', None, [ctypes.POINTER(Contact), ctypes.POINTER(ContactForce), Real]),
-    ('dempy_law_hertz', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_linear', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_hysteretic', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_viscous', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_step', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_spring', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_mindlin', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
+    ('dem_world_create_checked', ctypes.c_void_p, [ctypes.POINTER(WorldDesc), ctypes.c_int, ctypes.c_size_t], 'World',
+     ['desc', 'version', 'real_size']),
+    ('dem_quat_about', Quat, [Vec3, Real], 'quat_about', ['axis', 'angle']),
+    ('dempy_quat_multiply', Quat, [Quat, Quat], 'quat_multiply', ['a', 'b']),
+    ('dempy_quat_rotate', Vec3, [Quat, Vec3], 'quat_rotate', ['q', 'v']),
+    ('dempy_quat_unrotate', Vec3, [Quat, Vec3], 'quat_unrotate', ['q', 'v']),
+    ('dempy_memory_rotate', Vec3, [ctypes.POINTER(Contact), Vec3], 'memory_rotate', ['c', 'v']),
+    ('dempy_law_load', None, [ctypes.POINTER(Contact), ctypes.POINTER(ContactForce), Real], 'law_load', ['c', 'f',
+     'hold']),
+    ('dempy_law_hertz', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_hertz', ['c', 'memory', 'f']),
+    ('dempy_law_linear', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_linear', ['c', 'memory', 'f']),
+    ('dempy_law_hysteretic', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_hysteretic', ['c', 'memory', 'f']),
+    ('dempy_law_viscous', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_viscous', ['c', 'memory', 'f']),
+    ('dempy_law_step', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_step', ['c', 'memory', 'f']),
+    ('dempy_law_spring', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_spring', ['c', 'memory', 'f']),
+    ('dempy_law_mindlin', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_mindlin', ['c', 'memory', 'f']),
     ('dempy_law_mindlin_rescaled', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real),
-     ctypes.POINTER(ContactForce)]),
-    ('dempy_law_roll_step', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_roll_constant', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_roll_epsd', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dempy_law_twist', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)]),
-    ('dem_world_create_error_get', ctypes.c_char_p, [ctypes.POINTER(WorldDesc)]),
-    ('dem_world_destroy', None, [ctypes.c_void_p]),
-    ('dem_world_error_get', ctypes.c_char_p, [ctypes.c_void_p]),
-    ('dem_result_name_get', ctypes.c_char_p, [ctypes.c_int]),
-    ('dem_world_desc_get', WorldDesc, [ctypes.c_void_p]),
-    ('dem_material_add', Material, [ctypes.c_void_p, ctypes.POINTER(MaterialDesc)]),
-    ('dem_material_set', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(MaterialDesc)]),
-    ('dem_material_get', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(MaterialDesc)]),
-    ('dem_pair_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Pair)]),
-    ('dem_pair_set', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Pair)]),
+     ctypes.POINTER(ContactForce)], 'law_mindlin_rescaled', ['c', 'memory', 'f']),
+    ('dempy_law_roll_step', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_roll_step', ['c', 'memory', 'f']),
+    ('dempy_law_roll_constant', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_roll_constant', ['c', 'memory', 'f']),
+    ('dempy_law_roll_epsd', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_roll_epsd', ['c', 'memory', 'f']),
+    ('dempy_law_twist', None, [ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce)],
+     'law_twist', ['c', 'memory', 'f']),
+    ('dem_world_create_error_get', ctypes.c_char_p, [ctypes.POINTER(WorldDesc)], 'world_create_error', ['desc']),
+    ('dem_world_destroy', None, [ctypes.c_void_p], 'World.destroy', ['self']),
+    ('dem_world_error_get', ctypes.c_char_p, [ctypes.c_void_p], 'World.error', ['self']),
+    ('dem_result_name_get', ctypes.c_char_p, [ctypes.c_int], 'result_name', ['result']),
+    ('dem_world_desc_get', WorldDesc, [ctypes.c_void_p], 'World.desc', ['self']),
+    ('dem_material_add', Material, [ctypes.c_void_p, ctypes.POINTER(MaterialDesc)], 'World.material', ['self',
+     'desc']),
+    ('dem_material_set', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(MaterialDesc)], 'Material.set',
+     ['self', 'self', 'desc']),
+    ('dem_material_get', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(MaterialDesc)], 'Material.desc',
+     ['self', 'self', 'desc']),
+    ('dem_pair_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Pair)], 'World.pair', ['self',
+     'a', 'b', 'pair']),
+    ('dem_pair_set', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Pair)], 'World.pair_set',
+     ['self', 'a', 'b', 'pair']),
     ('dem_coefficients_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, Real, Real,
-     ctypes.POINTER(Coefficients)]),
-    ('dem_pairs_print', None, [ctypes.c_void_p, ctypes.c_void_p]),
-    ('dem_sphere_add', Body, [ctypes.c_void_p, Material, Real, Vec3]),
+     ctypes.POINTER(Coefficients)], 'World.coefficients', ['self', 'a', 'b', 'radius_a', 'radius_b', 'out']),
+    ('dem_pairs_print', None, [ctypes.c_void_p, ctypes.c_void_p], 'World.pairs_print', ['self', 'out']),
+    ('dem_sphere_add', Body, [ctypes.c_void_p, Material, Real, Vec3], 'World.sphere', ['self', 'material', 'radius',
+     'position']),
     ('dem_spheres_add', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.c_int, ctypes.POINTER(Real),
-     ctypes.POINTER(Real), ctypes.POINTER(Real), Real]),
-    ('dem_spheres_fill', ctypes.c_int, [ctypes.c_void_p, Material, Real, Region, ctypes.c_int, ctypes.c_uint64]),
-    ('dem_sizes_finer_get', ctypes.c_double, [ctypes.c_void_p, ctypes.POINTER(Sizes), Real]),
+     ctypes.POINTER(Real), ctypes.POINTER(Real), Real], 'World.spheres', ['self', 'material', 'count', 'positions',
+     'velocities', 'radii', 'radius']),
+    ('dem_spheres_fill', ctypes.c_int, [ctypes.c_void_p, Material, Real, Region, ctypes.c_int, ctypes.c_uint64],
+     'World.spheres_fill', ['self', 'material', 'radius', 'region', 'count', 'seed']),
+    ('dem_sizes_finer_get', ctypes.c_double, [ctypes.c_void_p, ctypes.POINTER(Sizes), Real], 'World.sizes_finer',
+     ['self', 'sizes', 'radius']),
     ('dem_sizes_draw', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Sizes), ctypes.c_int, ctypes.c_uint64,
-     ctypes.POINTER(Real)]),
+     ctypes.POINTER(Real)], 'World.sizes_draw', ['self', 'sizes', 'count', 'seed', 'radii']),
     ('dem_sizes_classes_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Sizes), ctypes.c_int,
-     ctypes.POINTER(Real), ctypes.POINTER(ctypes.c_double)]),
+     ctypes.POINTER(Real), ctypes.POINTER(ctypes.c_double)], 'World.sizes_classes', ['self', 'sizes', 'class_count',
+     'radius', 'amount']),
     ('dem_sizes_fill', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(Sizes), Region, ctypes.c_int,
-     ctypes.c_uint64]),
-    ('dem_spheres_pack', ctypes.c_int, [ctypes.c_void_p, Material, Real, Real, Region, ctypes.c_int]),
-    ('dem_body_remove', ctypes.c_int, [ctypes.c_void_p, Body]),
-    ('dem_body_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyState)]),
-    ('dem_body_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyState)]),
-    ('dem_body_radius_set', ctypes.c_int, [ctypes.c_void_p, Body, Real]),
-    ('dem_temperature_get', ctypes.c_double, [ctypes.c_void_p]),
-    ('dem_temperature_set', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.c_uint64]),
-    ('dem_bodies_get', Bodies, [ctypes.c_void_p]),
-    ('dem_body_id_get', Body, [ctypes.c_void_p, ctypes.c_int]),
-    ('dem_group_get', Group, [ctypes.c_void_p, ctypes.c_char_p]),
+     ctypes.c_uint64], 'World.sizes_fill', ['self', 'material', 'sizes', 'region', 'count', 'seed']),
+    ('dem_spheres_pack', ctypes.c_int, [ctypes.c_void_p, Material, Real, Real, Region, ctypes.c_int],
+     'World.spheres_pack', ['self', 'material', 'radius', 'padding', 'region', 'count']),
+    ('dem_body_remove', ctypes.c_int, [ctypes.c_void_p, Body], 'Body.remove', ['self', 'self']),
+    ('dem_body_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyState)], 'Body.state', ['self', 'self',
+     'state']),
+    ('dem_body_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyState)], 'Body.set', ['self', 'self',
+     'state']),
+    ('dem_body_radius_set', ctypes.c_int, [ctypes.c_void_p, Body, Real], 'Body.radius_set', ['self', 'self',
+     'radius']),
+    ('dem_temperature_get', ctypes.c_double, [ctypes.c_void_p], 'World.temperature', ['self']),
+    ('dem_temperature_set', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.c_uint64],
+     'World.temperature_set', ['self', 'temperature', 'seed']),
+    ('dem_bodies_get', Bodies, [ctypes.c_void_p], 'World.bodies_memory', ['self']),
+    ('dem_body_id_get', Body, [ctypes.c_void_p, ctypes.c_int], 'World.body_id', ['self', 'index']),
+    ('dem_group_get', Group, [ctypes.c_void_p, ctypes.c_char_p], 'World.group', ['self', 'name']),
     ('dem_bodies_select', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), ctypes.POINTER(Body),
-     ctypes.c_int]),
-    ('dem_bodies_group_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), Group, ctypes.c_int]),
-    ('dem_bodies_velocity_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), Vec3, Vec3]),
-    ('dem_bodies_fixed_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), ctypes.c_int]),
-    ('dem_bodies_remove', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection)]),
-    ('dem_bodies_means_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), ctypes.POINTER(BodiesMeans)]),
-    ('dem_body_reals_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(Real)]),
-    ('dem_body_reals_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(Real)]),
-    ('dem_bodies_reals_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Real)]),
-    ('dem_wall_reals_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Real)]),
-    ('dem_wall_reals_set', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Real)]),
-    ('dem_shape_ellipsoid_add', Shape, [ctypes.c_void_p, Vec3]),
-    ('dem_shape_cluster_add', Shape, [ctypes.c_void_p, ctypes.POINTER(ClusterDesc)]),
-    ('dem_shape_polyhedron_add', Shape, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Real)]),
-    ('dem_shape_mesh_add', Shape, [ctypes.c_void_p, ctypes.POINTER(Mesh), Real]),
+     ctypes.c_int], 'World.bodies_select', ['self', 'selection', 'out', 'capacity']),
+    ('dem_bodies_group_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), Group, ctypes.c_int],
+     'World.bodies_group_set', ['self', 'selection', 'group', 'member']),
+    ('dem_bodies_velocity_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), Vec3, Vec3],
+     'World.bodies_velocity_set', ['self', 'selection', 'velocity', 'spin']),
+    ('dem_bodies_fixed_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), ctypes.c_int],
+     'World.bodies_fixed_set', ['self', 'selection', 'fixed']),
+    ('dem_bodies_remove', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection)], 'World.bodies_remove', ['self',
+     'selection']),
+    ('dem_bodies_means_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Selection), ctypes.POINTER(BodiesMeans)],
+     'World.bodies_means', ['self', 'selection', 'means']),
+    ('dem_body_reals_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(Real)], 'Body.reals', ['self', 'self',
+     'reals']),
+    ('dem_body_reals_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(Real)], 'Body.reals_set', ['self',
+     'self', 'reals']),
+    ('dem_bodies_reals_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Real)], 'World.bodies_reals_set', ['self',
+     'reals']),
+    ('dem_wall_reals_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Real)], 'Wall.reals', ['self', 'self',
+     'reals']),
+    ('dem_wall_reals_set', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Real)], 'Wall.reals_set', ['self',
+     'self', 'reals']),
+    ('dem_shape_ellipsoid_add', Shape, [ctypes.c_void_p, Vec3], 'World.shape_ellipsoid', ['self', 'semi_axes']),
+    ('dem_shape_cluster_add', Shape, [ctypes.c_void_p, ctypes.POINTER(ClusterDesc)], 'World.shape_cluster', ['self',
+     'desc']),
+    ('dem_shape_polyhedron_add', Shape, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Real)],
+     'World.shape_polyhedron', ['self', 'count', 'points']),
+    ('dem_shape_mesh_add', Shape, [ctypes.c_void_p, ctypes.POINTER(Mesh), Real], 'World.shape_mesh', ['self', 'mesh',
+     'dent']),
     ('dem_shape_union_add', Shape, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Shape), ctypes.POINTER(Real),
-     ctypes.POINTER(Real)]),
-    ('dem_shape_polygon_add', Shape, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Real)]),
-    ('dem_shape_get', ctypes.c_int, [ctypes.c_void_p, Shape, ctypes.POINTER(ShapeInfo)]),
-    ('dem_body_add', Body, [ctypes.c_void_p, Material, Shape, Vec3, Quat]),
+     ctypes.POINTER(Real)], 'World.shape_union', ['self', 'count', 'shapes', 'positions', 'orientations']),
+    ('dem_shape_polygon_add', Shape, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Real)], 'World.shape_polygon',
+     ['self', 'count', 'points']),
+    ('dem_shape_get', ctypes.c_int, [ctypes.c_void_p, Shape, ctypes.POINTER(ShapeInfo)], 'Shape.info', ['self',
+     'self', 'info']),
+    ('dem_body_add', Body, [ctypes.c_void_p, Material, Shape, Vec3, Quat], 'World.body', ['self', 'material', 'shape',
+     'position', 'orientation']),
     ('dem_bodies_add', ctypes.c_int, [ctypes.c_void_p, Material, Shape, ctypes.c_int, ctypes.POINTER(Real),
-     ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(Real)]),
-    ('dem_bodies_fill', ctypes.c_int, [ctypes.c_void_p, Material, Shape, Region, ctypes.c_int, ctypes.c_uint64]),
-    ('dem_ellipsoids_contact_get', EllipsoidContact, [ctypes.POINTER(Ellipsoid), ctypes.POINTER(Ellipsoid), Real]),
-    ('dem_body_counts_get', BodyCounts, [ctypes.c_void_p]),
-    ('dem_wall_plane_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3]),
-    ('dem_wall_cylinder_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3, Real, ctypes.c_int]),
+     ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(Real)], 'World.bodies_add',
+     ['self', 'material', 'shape', 'count', 'positions', 'orientations', 'velocities', 'spins', 'scales']),
+    ('dem_bodies_fill', ctypes.c_int, [ctypes.c_void_p, Material, Shape, Region, ctypes.c_int, ctypes.c_uint64],
+     'World.bodies_fill', ['self', 'material', 'shape', 'region', 'count', 'seed']),
+    ('dem_ellipsoids_contact_get', EllipsoidContact, [ctypes.POINTER(Ellipsoid), ctypes.POINTER(Ellipsoid), Real],
+     'ellipsoids_contact', ['a', 'b', 'lambda_']),
+    ('dem_body_counts_get', BodyCounts, [ctypes.c_void_p], 'World.body_counts', ['self']),
+    ('dem_wall_plane_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3], 'World.wall_plane', ['self', 'material',
+     'point', 'normal']),
+    ('dem_wall_cylinder_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3, Real, ctypes.c_int],
+     'World.wall_cylinder', ['self', 'material', 'point', 'axis', 'radius', 'inside']),
     ('dem_wall_revolved_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3, ctypes.c_int, ctypes.POINTER(Real),
-     ctypes.POINTER(Real)]),
-    ('dem_wall_cone_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3, Real, Real]),
-    ('dem_wall_profile_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(Profile), ctypes.c_int]),
-    ('dem_wall_mesh_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(Mesh)]),
-    ('dem_wall_grains_add', Wall, [ctypes.c_void_p, Material, ctypes.c_int, ctypes.POINTER(Real), Real, Real]),
-    ('dem_wall_sieve_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(SieveDesc)]),
-    ('dem_sieve_blinded_get', ctypes.c_int, [ctypes.c_void_p, Wall, Real]),
-    ('dem_wall_motion_set', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Motion)]),
-    ('dem_wall_surface_velocity_set', ctypes.c_int, [ctypes.c_void_p, Wall, Vec3]),
-    ('dem_wall_surface_velocity_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Vec3)]),
-    ('dem_wall_pose_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Pose)]),
-    ('dem_wall_remove', ctypes.c_int, [ctypes.c_void_p, Wall]),
-    ('dem_wall_loads_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(WallLoads)]),
-    ('dem_wall_loads_reset', ctypes.c_int, [ctypes.c_void_p, Wall]),
-    ('dem_joint_add', Joint, [ctypes.c_void_p, ctypes.POINTER(JointDesc)]),
-    ('dem_joint_motor_set', ctypes.c_int, [ctypes.c_void_p, Joint, ctypes.c_int, Real, Real]),
-    ('dem_joint_get', ctypes.c_int, [ctypes.c_void_p, Joint, ctypes.POINTER(JointState)]),
-    ('dem_joint_remove', ctypes.c_int, [ctypes.c_void_p, Joint]),
-    ('dem_body_rail_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(RailDesc)]),
-    ('dem_body_reaction_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(RailState)]),
-    ('dem_feed_add', Feed, [ctypes.c_void_p, ctypes.POINTER(FeedDesc)]),
-    ('dem_feed_get', ctypes.c_int, [ctypes.c_void_p, Feed, ctypes.POINTER(FeedState)]),
-    ('dem_outlet_add', Outlet, [ctypes.c_void_p, ctypes.POINTER(OutletDesc)]),
-    ('dem_outlet_get', ctypes.c_int, [ctypes.c_void_p, Outlet, ctypes.POINTER(OutletState)]),
-    ('dem_outlet_reset', ctypes.c_int, [ctypes.c_void_p, Outlet]),
-    ('dem_step_advice_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Advice)]),
-    ('dem_world_check', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Finding), ctypes.c_int]),
-    ('dem_world_check_print', ctypes.c_int, [ctypes.c_void_p, ctypes.c_void_p]),
-    ('dem_world_step', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int]),
-    ('dem_world_run', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ProgressFn.c, ctypes.c_void_p]),
-    ('dem_world_run_to', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ProgressFn.c, ctypes.c_void_p]),
-    ('dem_world_settle', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, Real, ProgressFn.c, ctypes.c_void_p]),
-    ('dem_progress_print', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p]),
-    ('dem_world_gravity_set', ctypes.c_int, [ctypes.c_void_p, Vec3]),
-    ('dem_cell_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(CellDesc)]),
-    ('dem_cell_state_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(CellState)]),
-    ('dem_world_dt_set', ctypes.c_int, [ctypes.c_void_p, Real]),
-    ('dem_world_time_get', ctypes.c_double, [ctypes.c_void_p]),
-    ('dem_world_steps_get', ctypes.c_uint64, [ctypes.c_void_p]),
-    ('dem_world_hash_get', ctypes.c_uint64, [ctypes.c_void_p]),
-    ('dem_counters_get', Counters, [ctypes.c_void_p]),
-    ('dem_overlap_max_reset', None, [ctypes.c_void_p]),
-    ('dem_ledger_get', Ledger, [ctypes.c_void_p]),
-    ('dem_totals_get', Totals, [ctypes.c_void_p]),
-    ('dem_observer_height', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p]),
-    ('dem_observer_kinetic', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p]),
-    ('dem_observer_contacts', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p]),
-    ('dem_observer_walls', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p]),
-    ('dem_trials_run', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(TrialsDesc), ctypes.POINTER(Trials)]),
-    ('dem_trials_print', None, [ctypes.POINTER(Trials), ctypes.c_void_p]),
-    ('dem_contacts_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(ContactInfo), ctypes.c_int]),
-    ('dem_contacts_each', ctypes.c_int, [ctypes.c_void_p, ContactFn.c, ctypes.c_void_p]),
-    ('dem_bonds_make', ctypes.c_int, [ctypes.c_void_p, Real, ContactFn.c, ctypes.c_void_p]),
-    ('dem_candidates_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint32), ctypes.c_int]),
-    ('dem_candidates_rebuild', ctypes.c_int, [ctypes.c_void_p]),
-    ('dem_events_record', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(EventsDesc)]),
-    ('dem_events_stop', ctypes.c_int, [ctypes.c_void_p]),
-    ('dem_events_open_each', ctypes.c_int, [ctypes.c_void_p, EventFn.c, ctypes.c_void_p]),
-    ('dem_impacts_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Impacts)]),
-    ('dem_impacts_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
+     ctypes.POINTER(Real)], 'World.wall_revolved', ['self', 'material', 'point', 'axis', 'count', 'radii',
+     'heights']),
+    ('dem_wall_cone_add', Wall, [ctypes.c_void_p, Material, Vec3, Vec3, Real, Real], 'World.wall_cone', ['self',
+     'material', 'from_', 'to', 'radius_from', 'radius_to']),
+    ('dem_wall_profile_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(Profile), ctypes.c_int],
+     'World.wall_profile', ['self', 'material', 'profile', 'rule']),
+    ('dem_wall_mesh_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(Mesh)], 'World.wall_mesh', ['self',
+     'material', 'mesh']),
+    ('dem_wall_grains_add', Wall, [ctypes.c_void_p, Material, ctypes.c_int, ctypes.POINTER(Real), Real, Real],
+     'World.wall_grains', ['self', 'material', 'count', 'positions', 'radius', 'share']),
+    ('dem_wall_sieve_add', Wall, [ctypes.c_void_p, Material, ctypes.POINTER(SieveDesc)], 'World.wall_sieve', ['self',
+     'material', 'desc']),
+    ('dem_sieve_blinded_get', ctypes.c_int, [ctypes.c_void_p, Wall, Real], 'World.sieve_blinded', ['self', 'sieve',
+     'speed']),
+    ('dem_wall_motion_set', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Motion)], 'Wall.motion_set', ['self',
+     'self', 'motion']),
+    ('dem_wall_surface_velocity_set', ctypes.c_int, [ctypes.c_void_p, Wall, Vec3], 'Wall.surface_velocity_set',
+     ['self', 'self', 'velocity']),
+    ('dem_wall_surface_velocity_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Vec3)],
+     'Wall.surface_velocity', ['self', 'self', 'velocity']),
+    ('dem_wall_pose_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Pose)], 'Wall.pose', ['self', 'self',
+     'pose']),
+    ('dem_wall_remove', ctypes.c_int, [ctypes.c_void_p, Wall], 'Wall.remove', ['self', 'self']),
+    ('dem_wall_loads_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(WallLoads)], 'Wall.loads', ['self',
+     'self', 'loads']),
+    ('dem_wall_loads_reset', ctypes.c_int, [ctypes.c_void_p, Wall], 'Wall.loads_reset', ['self', 'self']),
+    ('dem_joint_add', Joint, [ctypes.c_void_p, ctypes.POINTER(JointDesc)], 'World.joint', ['self', 'desc']),
+    ('dem_joint_motor_set', ctypes.c_int, [ctypes.c_void_p, Joint, ctypes.c_int, Real, Real], 'Joint.motor_set',
+     ['self', 'self', 'motor', 'speed', 'torque']),
+    ('dem_joint_get', ctypes.c_int, [ctypes.c_void_p, Joint, ctypes.POINTER(JointState)], 'Joint.state', ['self',
+     'self', 'state']),
+    ('dem_joint_remove', ctypes.c_int, [ctypes.c_void_p, Joint], 'Joint.remove', ['self', 'self']),
+    ('dem_body_rail_set', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(RailDesc)], 'Body.rail_set', ['self',
+     'self', 'desc']),
+    ('dem_body_reaction_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(RailState)], 'Body.reaction',
+     ['self', 'self', 'state']),
+    ('dem_feed_add', Feed, [ctypes.c_void_p, ctypes.POINTER(FeedDesc)], 'World.feed', ['self', 'desc']),
+    ('dem_feed_get', ctypes.c_int, [ctypes.c_void_p, Feed, ctypes.POINTER(FeedState)], 'Feed.state', ['self', 'self',
+     'state']),
+    ('dem_outlet_add', Outlet, [ctypes.c_void_p, ctypes.POINTER(OutletDesc)], 'World.outlet', ['self', 'desc']),
+    ('dem_outlet_get', ctypes.c_int, [ctypes.c_void_p, Outlet, ctypes.POINTER(OutletState)], 'Outlet.state', ['self',
+     'self', 'state']),
+    ('dem_outlet_reset', ctypes.c_int, [ctypes.c_void_p, Outlet], 'Outlet.reset', ['self', 'self']),
+    ('dem_step_advice_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Advice)], 'World.step_advice', ['self',
+     'advice']),
+    ('dem_world_check', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Finding), ctypes.c_int], 'World.check',
+     ['self', 'findings', 'capacity']),
+    ('dem_world_check_print', ctypes.c_int, [ctypes.c_void_p, ctypes.c_void_p], 'World.check_print', ['self', 'out']),
+    ('dem_world_step', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int], 'World.step', ['self', 'steps']),
+    ('dem_world_run', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ProgressFn.c, ctypes.c_void_p], 'World.run',
+     ['self', 'seconds', 'progress', 'user=']),
+    ('dem_world_run_to', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ProgressFn.c, ctypes.c_void_p],
+     'World.run_to', ['self', 'time', 'progress', 'user=']),
+    ('dem_world_settle', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, Real, ProgressFn.c, ctypes.c_void_p],
+     'World.settle', ['self', 'seconds', 'speed', 'progress', 'user=']),
+    ('dem_progress_print', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p],
+     'World.progress_print', ['self', 'done', 'seconds_left', 'user=']),
+    ('dem_world_gravity_set', ctypes.c_int, [ctypes.c_void_p, Vec3], 'World.gravity_set', ['self', 'gravity']),
+    ('dem_cell_set', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(CellDesc)], 'World.cell_set', ['self', 'desc']),
+    ('dem_cell_state_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(CellState)], 'World.cell_state', ['self',
+     'state']),
+    ('dem_world_dt_set', ctypes.c_int, [ctypes.c_void_p, Real], 'World.dt_set', ['self', 'dt']),
+    ('dem_world_time_get', ctypes.c_double, [ctypes.c_void_p], 'World.time', ['self']),
+    ('dem_world_steps_get', ctypes.c_uint64, [ctypes.c_void_p], 'World.steps', ['self']),
+    ('dem_world_hash_get', ctypes.c_uint64, [ctypes.c_void_p], 'World.hash', ['self']),
+    ('dem_counters_get', Counters, [ctypes.c_void_p], 'World.counters', ['self']),
+    ('dem_overlap_max_reset', None, [ctypes.c_void_p], 'World.overlap_max_reset', ['self']),
+    ('dem_ledger_get', Ledger, [ctypes.c_void_p], 'World.ledger', ['self']),
+    ('dem_totals_get', Totals, [ctypes.c_void_p], 'World.totals', ['self']),
+    ('dem_observer_height', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p], 'World.observer_height', ['self',
+     'user=']),
+    ('dem_observer_kinetic', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p], 'World.observer_kinetic', ['self',
+     'user=']),
+    ('dem_observer_contacts', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p], 'World.observer_contacts', ['self',
+     'user=']),
+    ('dem_observer_walls', ctypes.c_double, [ctypes.c_void_p, ctypes.c_void_p], 'World.observer_walls', ['self',
+     'user=']),
+    ('dem_trials_run', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(TrialsDesc), ctypes.POINTER(Trials)],
+     'World.trials_run', ['self', 'desc', 'trials']),
+    ('dem_trials_print', None, [ctypes.POINTER(Trials), ctypes.c_void_p], 'trials_print', ['trials', 'out']),
+    ('dem_contacts_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(ContactInfo), ctypes.c_int], 'World.contacts',
+     ['self', 'out', 'capacity']),
+    ('dem_contacts_each', ctypes.c_int, [ctypes.c_void_p, ContactFn.c, ctypes.c_void_p], 'World.contacts_each',
+     ['self', 'fn', 'user=']),
+    ('dem_bonds_make', ctypes.c_int, [ctypes.c_void_p, Real, ContactFn.c, ctypes.c_void_p], 'World.bonds_make',
+     ['self', 'gap', 'make', 'user=']),
+    ('dem_candidates_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint32), ctypes.c_int],
+     'World.candidates', ['self', 'out', 'capacity']),
+    ('dem_candidates_rebuild', ctypes.c_int, [ctypes.c_void_p], 'World.candidates_rebuild', ['self']),
+    ('dem_events_record', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(EventsDesc)], 'World.events_record', ['self',
+     'desc']),
+    ('dem_events_stop', ctypes.c_int, [ctypes.c_void_p], 'World.events_stop', ['self']),
+    ('dem_events_open_each', ctypes.c_int, [ctypes.c_void_p, EventFn.c, ctypes.c_void_p], 'World.events_open_each',
+     ['self', 'fn', 'user=']),
+    ('dem_impacts_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Impacts)], 'World.impacts',
+     ['self', 'a', 'b', 'impacts']),
+    ('dem_impacts_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.impacts_csv_write', ['self',
+     'path']),
     ('dem_wall_wear_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.c_double, ctypes.c_double,
-     ctypes.POINTER(Wear)]),
-    ('dem_wall_wear_facets_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(ctypes.c_double),
-     ctypes.c_int]),
-    ('dem_wall_servo_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Servo)]),
-    ('dem_stress_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Stress)]),
-    ('dem_field_add', Field, [ctypes.c_void_p, ctypes.POINTER(FieldDesc)]),
-    ('dem_field_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.POINTER(FieldData)]),
+     ctypes.POINTER(Wear)], 'Wall.wear', ['self', 'self', 'coefficient', 'hardness', 'wear']),
+    ('dem_wall_wear_facets_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(ctypes.c_double), ctypes.c_int],
+     'Wall.wear_facets', ['self', 'self', 'work', 'capacity']),
+    ('dem_wall_servo_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.POINTER(Servo)], 'Wall.servo', ['self',
+     'self', 'servo']),
+    ('dem_stress_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Stress)], 'World.stress', ['self', 'stress']),
+    ('dem_field_add', Field, [ctypes.c_void_p, ctypes.POINTER(FieldDesc)], 'World.field', ['self', 'desc']),
+    ('dem_field_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.POINTER(FieldData)], 'Field.data', ['self',
+     'self', 'data']),
     ('dem_field_cell_get', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.c_int, ctypes.c_int, ctypes.c_int,
-     ctypes.POINTER(FieldCell)]),
-    ('dem_body_means_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyMeans)]),
-    ('dem_field_reset', ctypes.c_int, [ctypes.c_void_p, Field]),
-    ('dem_mixing_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(MixingDesc), ctypes.POINTER(Mixing)]),
-    ('dem_repose_heap_get', ctypes.c_int, [ctypes.c_void_p, Box, ctypes.POINTER(Repose)]),
-    ('dem_repose_drum_get', ctypes.c_int, [ctypes.c_void_p, Box, Vec3, ctypes.POINTER(Repose)]),
+     ctypes.POINTER(FieldCell)], 'Field.cell', ['self', 'self', 'i', 'j', 'k', 'cell']),
+    ('dem_body_means_get', ctypes.c_int, [ctypes.c_void_p, Body, ctypes.POINTER(BodyMeans)], 'Body.means', ['self',
+     'self', 'means']),
+    ('dem_field_reset', ctypes.c_int, [ctypes.c_void_p, Field], 'Field.reset', ['self', 'self']),
+    ('dem_mixing_get', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(MixingDesc), ctypes.POINTER(Mixing)],
+     'World.mixing', ['self', 'desc', 'mixing']),
+    ('dem_repose_heap_get', ctypes.c_int, [ctypes.c_void_p, Box, ctypes.POINTER(Repose)], 'World.repose_heap',
+     ['self', 'box=', 'repose']),
+    ('dem_repose_drum_get', ctypes.c_int, [ctypes.c_void_p, Box, Vec3, ctypes.POINTER(Repose)], 'World.repose_drum',
+     ['self', 'box', 'axis', 'repose']),
     ('dem_mesh_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Mesh),
-     ctypes.POINTER(MeshHealth)]),
+     ctypes.POINTER(MeshHealth)], 'World.mesh_read', ['self', 'path', 'mesh', 'health']),
     ('dem_mesh_parse', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t,
-     ctypes.POINTER(Mesh), ctypes.POINTER(MeshHealth)]),
+     ctypes.POINTER(Mesh), ctypes.POINTER(MeshHealth)], 'World.mesh_parse', ['self', 'name', 'data', 'size', 'mesh',
+     'health']),
     ('dem_mesh_part_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.POINTER(Mesh),
-     ctypes.POINTER(MeshHealth)]),
-    ('dem_mesh_free', None, [ctypes.c_void_p, ctypes.POINTER(Mesh)]),
-    ('dem_mesh_place', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Mesh), Real, Quat, Vec3]),
+     ctypes.POINTER(MeshHealth)], 'World.mesh_part_read', ['self', 'path', 'part', 'mesh', 'health']),
+    ('dem_mesh_free', None, [ctypes.c_void_p, ctypes.POINTER(Mesh)], 'World.mesh_free', ['self', 'mesh']),
+    ('dem_mesh_place', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Mesh), Real, Quat, Vec3], 'World.mesh_place',
+     ['self', 'mesh', 'scale', 'rotation', 'to']),
     ('dem_mesh_spheres', ctypes.c_int, [ctypes.c_void_p, ctypes.POINTER(Mesh), ctypes.c_int, ctypes.POINTER(Real),
-     ctypes.POINTER(Real), ctypes.POINTER(SpheresFit)]),
+     ctypes.POINTER(Real), ctypes.POINTER(SpheresFit)], 'World.mesh_spheres', ['self', 'mesh', 'count', 'positions',
+     'radii', 'fit']),
     ('dem_wall_parts_add', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, Real, ctypes.c_int,
-     ctypes.POINTER(WallPart), ctypes.POINTER(Wall)]),
-    ('dem_profile_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Profile)]),
+     ctypes.POINTER(WallPart), ctypes.POINTER(Wall)], 'World.wall_parts', ['self', 'path', 'scale', 'count', 'parts',
+     'walls']),
+    ('dem_profile_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Profile)],
+     'World.profile_read', ['self', 'path', 'profile']),
     ('dem_profile_parse', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t,
-     ctypes.POINTER(Profile)]),
-    ('dem_profile_free', None, [ctypes.c_void_p, ctypes.POINTER(Profile)]),
-    ('dem_grains_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Grains)]),
+     ctypes.POINTER(Profile)], 'World.profile_parse', ['self', 'name', 'data', 'size', 'profile']),
+    ('dem_profile_free', None, [ctypes.c_void_p, ctypes.POINTER(Profile)], 'World.profile_free', ['self', 'profile']),
+    ('dem_grains_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(Grains)], 'World.grains_read',
+     ['self', 'path', 'grains']),
     ('dem_grains_parse', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t,
-     ctypes.POINTER(Grains)]),
-    ('dem_grains_free', None, [ctypes.c_void_p, ctypes.POINTER(Grains)]),
-    ('dem_grains_add', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(Grains)]),
-    ('dem_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_vtk_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_xyz_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_contacts_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_walls_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, Real, Real]),
-    ('dem_surfaces_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_wall_loads_csv_write', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.c_char_p]),
-    ('dem_bodies_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_contacts_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_field_csv_write', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.c_char_p]),
-    ('dem_outlet_residence_csv_write', ctypes.c_int, [ctypes.c_void_p, Outlet, ctypes.c_char_p]),
-    ('dem_replay_open', ctypes.c_void_p, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ReplayDesc)]),
-    ('dem_replay_frame_write', ctypes.c_int, [ctypes.c_void_p]),
-    ('dem_replay_value_set', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double]),
-    ('dem_replay_close', ctypes.c_int, [ctypes.c_void_p]),
-    ('dem_checkpoint_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_checkpoint_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p]),
-    ('dem_checkpoint_read_changed', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p]),
-    ('dem_checkpoint_changes_get', ctypes.c_char_p, [ctypes.c_void_p]),
-    ('dem_output_add', Output, [ctypes.c_void_p, ctypes.POINTER(OutputDesc)]),
-    ('dem_output_every_add', Output, [ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_double]),
-    ('dem_output_remove', ctypes.c_int, [ctypes.c_void_p, Output]),
-    ('dem_slabs_create', ctypes.c_void_p, [ctypes.c_void_p, ctypes.POINTER(SlabsDesc)]),
-    ('dem_slabs_destroy', None, [ctypes.c_void_p]),
-    ('dem_slabs_step', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int]),
-    ('dem_slabs_collect', ctypes.c_int, [ctypes.c_void_p, ctypes.c_void_p]),
-    ('dem_slabs_loads_reset', None, [ctypes.c_void_p]),
-    ('dem_slabs_error_get', ctypes.c_char_p, [ctypes.c_void_p]),
-    ('dem_slab_get', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Slab)]),
-    ('dem_slabs_counters_get', SlabsCounters, [ctypes.c_void_p]),
-    ('dem_effects_get', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.POINTER(Effect)]),
-    ('dem_effects_print', None, [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p]),
-    ('dem_world_report', None, [ctypes.c_void_p, ctypes.c_void_p]),
+     ctypes.POINTER(Grains)], 'World.grains_parse', ['self', 'name', 'data', 'size', 'grains']),
+    ('dem_grains_free', None, [ctypes.c_void_p, ctypes.POINTER(Grains)], 'World.grains_free', ['self', 'grains']),
+    ('dem_grains_add', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(Grains)], 'World.grains', ['self',
+     'material', 'grains']),
+    ('dem_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.vtp_write', ['self', 'path']),
+    ('dem_vtk_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.vtk_write', ['self', 'path']),
+    ('dem_xyz_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.xyz_write', ['self', 'path']),
+    ('dem_contacts_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.contacts_vtp_write', ['self',
+     'path']),
+    ('dem_walls_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, Real, Real], 'World.walls_vtp_write',
+     ['self', 'path', 'z0', 'z1']),
+    ('dem_surfaces_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.surfaces_vtp_write', ['self',
+     'path']),
+    ('dem_wall_loads_csv_write', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.c_char_p], 'Wall.loads_csv_write',
+     ['self', 'self', 'path']),
+    ('dem_bodies_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.bodies_csv_write', ['self',
+     'path']),
+    ('dem_contacts_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.contacts_csv_write', ['self',
+     'path']),
+    ('dem_field_csv_write', ctypes.c_int, [ctypes.c_void_p, Field, ctypes.c_char_p], 'Field.csv_write', ['self',
+     'self', 'path']),
+    ('dem_outlet_residence_csv_write', ctypes.c_int, [ctypes.c_void_p, Outlet, ctypes.c_char_p],
+     'Outlet.residence_csv_write', ['self', 'self', 'path']),
+    ('dem_replay_open', ctypes.c_void_p, [ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ReplayDesc)],
+     'World.replay', ['self', 'path', 'desc']),
+    ('dem_replay_frame_write', ctypes.c_int, [ctypes.c_void_p], 'Replay.frame_write', ['self']),
+    ('dem_replay_value_set', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double], 'Replay.value_set',
+     ['self', 'name', 'value']),
+    ('dem_replay_close', ctypes.c_int, [ctypes.c_void_p], 'Replay.close', ['self']),
+    ('dem_checkpoint_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.checkpoint_write', ['self',
+     'path']),
+    ('dem_checkpoint_read', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.checkpoint_read', ['self',
+     'path']),
+    ('dem_checkpoint_read_changed', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p],
+     'World.checkpoint_read_changed', ['self', 'path', 'allowed']),
+    ('dem_checkpoint_changes_get', ctypes.c_char_p, [ctypes.c_void_p], 'World.checkpoint_changes', ['self']),
+    ('dem_output_add', Output, [ctypes.c_void_p, ctypes.POINTER(OutputDesc)], 'World.output', ['self', 'desc']),
+    ('dem_output_every_add', Output, [ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_double],
+     'World.output_every', ['self', 'kind', 'path', 'interval']),
+    ('dem_output_remove', ctypes.c_int, [ctypes.c_void_p, Output], 'Output.remove', ['self', 'self']),
+    ('dem_slabs_create', ctypes.c_void_p, [ctypes.c_void_p, ctypes.POINTER(SlabsDesc)], 'World.slabs', ['self',
+     'desc']),
+    ('dem_slabs_destroy', None, [ctypes.c_void_p], 'Slabs.destroy', ['self']),
+    ('dem_slabs_step', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int], 'Slabs.step', ['self', 'steps']),
+    ('dem_slabs_collect', ctypes.c_int, [ctypes.c_void_p, ctypes.c_void_p], 'Slabs.collect', ['self', 'world']),
+    ('dem_slabs_loads_reset', None, [ctypes.c_void_p], 'Slabs.loads_reset', ['self']),
+    ('dem_slabs_error_get', ctypes.c_char_p, [ctypes.c_void_p], 'Slabs.error', ['self']),
+    ('dem_slab_get', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(Slab)], 'Slabs.slab', ['self',
+     'index', 'slab']),
+    ('dem_slabs_counters_get', SlabsCounters, [ctypes.c_void_p], 'Slabs.counters', ['self']),
+    ('dem_effects_get', ctypes.c_int, [ctypes.c_void_p, ctypes.c_double, ctypes.POINTER(Effect)], 'World.effects',
+     ['self', 'budget', 'effects']),
+    ('dem_effects_print', None, [ctypes.c_void_p, ctypes.c_double, ctypes.c_void_p], 'World.effects_print', ['self',
+     'budget', 'out']),
+    ('dem_world_report', None, [ctypes.c_void_p, ctypes.c_void_p], 'World.report', ['self', 'out']),
+    ('dempy_rows', ctypes.c_int, [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_int, ctypes.c_void_p], 'dempy_rows', ['self']*5),
+    ('dempy_ids', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p], 'dempy_ids', ['self']*3),
+    ('dempy_put', ctypes.c_int, [ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p], 'dempy_put', ['self']*6),
 ]
+
+for _name in [name for name in Bodies.kinds if name not in ("count", "real_count")]:
+    setattr(Rows, _name, _row_property(_name, next(doc for name, _, doc in Bodies.rows if name == _name)))

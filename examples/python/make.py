@@ -198,11 +198,19 @@ def doc_lines(indent, text, more=()):
     return '%s"""%s%s"""\n' % (pad, text, "\n" + pad if len(lines) > 1 else "")
 
 
+def folded(line, width, indent):
+    """A line of code as lines of this width; texts in quotes are not divided."""
+    line = re.sub(r"'[^']*'", lambda found: found.group(0).replace(" ", "\0"), line)
+    return [piece.replace("\0", " ") for piece in textwrap.wrap(line, width, subsequent_indent=indent, break_long_words=False,
+                                                                 break_on_hyphens=False)]
+
+
 class Writer:
     def __init__(self, header):
         self.h, self.out = header, []
         self.ids = [n for n, (fields, _) in header.structs.items()
                     if [f.name for f in fields] in (["id"], ["slot", "generation"])]
+        self.nulls = {}         # arguments that may be None, by function
         self.free = {f.name[:-5]: f.name for f in header.functions if f.name.endswith("_free")}
 
     def write(self, text=""):
@@ -263,7 +271,7 @@ class Writer:
         return [repr(found.group(1))] + ([found.group(2) if found.group(2).isdigit() else repr(found.group(2))] if found.group(2) else [])
 
     def counts(self, name, fields):
-        """Lengths that follow from arrays: {length: (array, width)}."""
+        """Lengths that follow from arrays: {length: ((array, width), ...)}; all arrays of a length must have it."""
         found = {}
         for i, field in enumerate(fields):
             if field.type != "int" or not re.search(r"(^|_)count$", field.name) or name in ("dem_bodies", "dem_trials"):
@@ -274,8 +282,13 @@ class Writer:
             if not array and word in ("", "class"):
                 array = next((f for f in fields[i:] if f in arrays), None)
             if array:
-                shape = self.shape(name, array, fields) if array.pointer else None
-                found[field.name] = (array.name, int(shape[1]) if shape and len(shape) > 1 else 1)
+                def width(f):
+                    shape = self.shape(name, f, fields) if f.pointer and not f.dim else None
+                    return int(shape[1]) if shape and len(shape) > 1 and shape[1].isdigit() else 1
+                also = [f for f in arrays if f is not array and (
+                    f.dim and f.dim == array.dim or f.pointer and not f.dim and (
+                        (self.shape(name, f, fields) or [None])[0] == repr(field.name) or "one each" in f.doc))]
+                found[field.name] = tuple((f.name, width(f)) for f in [array] + also)
         return found
 
     # -- parts of the file --
@@ -300,20 +313,22 @@ class Writer:
         """A function type: how a Python function becomes a C function, and the type."""
         name = camel(f.name)
         struct_result = f.type in self.h.structs and not f.star
-        given, poison, pointers = [], None, []
+        given, poison, pointers, kept = [], None, [], []
         for a in f.arguments:
             if a.name == "user":
                 continue
             if a.pointer and a.type == "dem_world":
                 given.append("context.world(%s)" % a.name)
             elif a.pointer and a.type in self.h.structs:
-                given.append(a.name + "[0]")
+                kept.append((a.name, "%s.from_address(%s)" % (camel(a.type), a.name)))
+                given.append("_" + a.name)
                 if not a.const and (poison is None or poison[1]):
                     poison = (a.name, False)
             elif a.pointer and a.type in NUMBERS and "count" in [x.name for x in f.arguments]:
                 given.append("ctypes.cast(%s, ctypes.POINTER(%s*count))[0]" % (a.name, NUMBERS[a.type]))
             elif a.pointer and a.type in NUMBERS:
-                given.append(a.name + "[0]")
+                kept.append((a.name, "%s_type.from_address(%s) if %s else %s_type()" % ((a.name,)*4)))
+                given.append("_" + a.name)
                 pointers.append(a)
                 if not a.const and poison is None and f.name not in ("dem_contact_fn",):
                     poison = (a.name, True)
@@ -327,26 +342,45 @@ class Writer:
         self.write("\n\ndef _wrap_%s(function, context, struct):" % f.name)
         for a in pointers:
             size = {"memory": "context.memory", "rates": "2" if "rate_fn" in f.name else "context.reals", "reals": "context.reals",
-                    "values": "len(struct.columns.split())"}.get(a.name) or fail(
+                    "values": "len((struct.columns or '').split())"}.get(a.name) or fail(
                         "no rule for the length of %s of %s" % (a.name, f.name))
-            self.write("    %s_type = ctypes.POINTER(%s*%s)" % (a.name, NUMBERS[a.type], "(%s)" % size if "(" in size else size))
+            self.write("    %s_type = " % a.name + ("_history(context.memory, context.vectors)" if a.name == "memory" else "%s*%s" % (
+                NUMBERS[a.type], "(%s)" % size if "(" in size else size)))
         result = "None" if f.type == "void" and not f.star else "ctypes.c_void_p" if f.star else self.plain(f.type)
         self.write("\n    def call(%s):" % names)
         self.write("        try:")
+        for name_, made in kept:
+            self.write("            _%s = %s" % (name_, made))
         call = "function(%s)" % ", ".join(given)
-        convert = {"None": "%s", "ctypes.c_void_p": "return %s", "ctypes.c_double": "return float(%s)"}.get(
-            result, "return int(%s or context.raised is not None)")
-        self.write("            " + convert % call)
+        about = re.sub("^dem_|_fn$", "", f.name)
+        if result == "None":
+            if f.name in ("dem_contact_fn", "dem_event_fn", "dem_allocator_free_fn"):
+                self.write("            %s" % call)
+            else:
+                self.write("            result = %s" % call)
+                self.write("            if result is not None:")
+                self.write("                raise _returned(result, %r)" % about)
+        elif result == "ctypes.c_void_p":
+            self.write("            return %s" % call)
+        elif result in ("ctypes.c_double", "Real"):
+            self.write("            result = _real_from(%s, %r)" % (call, about))
+        else:
+            self.write("            result = int(bool(%s) or context.raised is not None%s)" % (
+                call, " or context.stop" if f.name == "dem_progress_fn" else ""))
+        for name_, _ in kept:
+            self.write("            if _refs(_%s) > _ONE and _held(_%s):" % (name_, name_))
+            self.write("                raise _kept(%r)" % name_)
+        if result not in ("None", "ctypes.c_void_p"):
+            self.write("            return result")
         self.write("        except BaseException as error:")
         self.write("            context.fail(error)")
         if poison:
-            self.write("            %s[0][0] = _NAN" % poison[0] if poison[1] else
-                       "            ctypes.cast(%s, ctypes.POINTER(Real))[0] = _NAN" % poison[0])
-        if result == "ctypes.c_double":
+            self.write("            Real.from_address(%s).value = _NAN" % poison[0])
+        if result in ("ctypes.c_double", "Real"):
             self.write("            return _NAN")
         elif result not in ("None", "ctypes.c_void_p"):
             self.write("            return 1")
-        kinds = [a.name + "_type" if a in pointers else self.value(a, False) for a in f.arguments]
+        kinds = ["ctypes.c_void_p" if a.name in [name_ for name_, _ in kept] else self.value(a, False) for a in f.arguments]
         self.write("    return ctypes.cast(ctypes.CFUNCTYPE(%s)(call), %s.c)" % (", ".join([result] + kinds), name))
         self.write("\n\n%s = Function(%s)" % (name, ", ".join(
             ["_wrap_" + f.name, result] + [self.value(a, False) for a in f.arguments])))
@@ -366,11 +400,13 @@ class Writer:
             elif f.pointer and kind.startswith("ctypes.POINTER"):
                 shape = self.shape(name, f, fields)
                 if shape or f.type in self.h.structs or name.endswith("_desc"):
-                    kind = "View(%s)" % ", ".join([self.plain(f.type)] + (shape or []) + (["const=True"] if f.const else []))
+                    one = f.type in self.h.structs and not shape and f.name not in [
+                        a for arrays in self.counts(name, fields).values() for a, _ in arrays]
+                    kind = "View(%s)" % ", ".join([self.plain(f.type)] + (shape or []) + (["const=True"] if f.const else [])
+                                                  + (["one=True"] if one else []))
             rows.append((f.name, kind, f.doc))
-        self.write("\n\n@_struct\nclass %s(%s):" % (camel(name), "Id" if name in self.ids else "Struct"))
+        self.write("\n\n@_struct\nclass %s(%s):" % (camel(name), BASES.get(name) or ("Id" if name in self.ids else "Struct")))
         self.write(doc_lines(4, doc or "The id of a %s." % name[4:]))
-        self.write("    __slots__ = ()")
         self.write("    c_name = %r" % name)
         counts = self.counts(name, fields)
         if counts:
@@ -415,11 +451,24 @@ class Writer:
             name = f.arguments[-1].type.split("_")[-1]
         if f.name == "dem_bodies_add":
             name = "bodies_add"             # world.bodies are those that are there
+        if f.name == "dem_bodies_get":
+            name = "bodies_memory"          # world.bodies has them in the order of adding
         return name
 
+    def called(self, f):
+        """The name of a function in Python."""
+        owner = self.owner(f)
+        if f.name == "dem_world_create_checked":
+            return "World"
+        return "%s.%s" % (camel(owner), self.short(f, owner)) if owner else re.sub("_get$", "", f.name[4:])
+
     def signature(self, f):
-        return "(%r, %s, [%s])" % (("dempy_" if f.inline else "") + (f.name[4:] if f.inline else f.name), self.result(f),
-                                   ", ".join(self.argument(a) for a in f.arguments))
+        owner, names = self.owner(f), []
+        for i, a in enumerate(f.arguments):
+            own = owner and (i == 0 or i == 1 and owner not in HANDLES)
+            names.append("self" if own else a.name + "="*(a.name in self.nulls.get(f.name, ()) or a.name == "user"))
+        return "(%r, %s, [%s], %r, %r)" % (("dempy_" if f.inline else "") + (f.name[4:] if f.inline else f.name), self.result(f),
+                                           ", ".join(self.argument(a) for a in f.arguments), self.called(f), names)
 
     def result(self, f):
         if f.star:
@@ -438,7 +487,7 @@ class Writer:
         world = "self" if owner in HANDLES else "self.world"
         pass_on, pre, outs, params, docs, fields = [], [], [], [], [], None
         if owner:
-            pass_on.append("%s._at" % world)
+            pass_on.append("%s._c" % world)
             args.pop(0)
             if owner not in HANDLES:
                 pass_on.append("self")
@@ -451,7 +500,11 @@ class Writer:
         counted = any(a.name == "count" for a in args) and inputs
         capacity = any(a.name == "capacity" for a in args)
         optional = False
-        after = []
+        where = self.called(f)
+        where = where if "." in where else "dem." + where
+
+        def at(a):
+            return "%r" % ("%s: %s" % (where, a.name))
         if not owner and f.inline:              # laws, in laws
             params = [(a.name, None) for a in args]
             pass_on, args, arrays, inputs = [a.name for a in args], [], [], []
@@ -464,7 +517,7 @@ class Writer:
                 params.append((a.name, "None" if all(x.name == "user" for x in args[i + 1:]) else None))
                 value = a.name
                 if kind == "dem_progress_fn":
-                    value = "%s or _go_on" % a.name
+                    value = "_go_on if %s is None else %s" % (a.name, a.name)
                 pre.append("%s = %s._callback(%s, %s)" % (a.name, world, camel(kind), value))
                 pass_on.append(a.name)
             elif a.name == "count" and counted:
@@ -480,15 +533,17 @@ class Writer:
                 params.append((a.name, "None" if null else None))
                 optional = optional or bool(null)
                 item = camel(kind) if kind in h.structs else self.plain(kind)
-                source = "[%s._bound(%s.make(item)) for item in %s]" % (world, item, a.name) if kind == "dem_wall_part" else a.name
+                source = "_parts_of(%s, %s, %s)" % (a.name, world, at(a)) if kind == "dem_wall_part" else a.name
                 if not counted:             # numbers of bodies and walls
-                    size = "%s._context.reals" % world if f.name != "dem_bodies_reals_set" else "%s._context.reals*%s.bodies.count" % (world, world)
-                    pre.append("%s = _array(%s, %s, %s, %r)" % (a.name, a.name, item, size, a.name))
+                    rows = "%s.bodies.count" % world
+                    pre.append("%s = _array_of(%s, %s, %s, %s)" % (
+                        a.name, a.name, item, at(a), "1, %s._context.reals" % world if f.name != "dem_bodies_reals_set" else
+                        "max(%s._context.reals, 1), %s" % (world, rows)))
                 elif first:
-                    pre.append("%s = _array(%s, %s)" % (a.name, source, item))
-                    pre.append("count = _count(%s, %d, %r)" % (a.name, width, a.name))
+                    pre.append("%s = _array_of(%s, %s, %s, %d)" % (a.name, source, item, at(a), width))
+                    pre.append("count = len(%s)%s" % (a.name, "" if width == 1 else "//%d" % width))
                 else:
-                    pre.append("%s = _array(%s, %s, %s, %r)" % (a.name, source, item, "count" if width == 1 else "%d*count" % width, a.name))
+                    pre.append("%s = _array_of(%s, %s, %s, %d, count, %s)" % (a.name, source, item, at(a), width, bool(null)))
                 pass_on.append(a.name)
             elif a.dim or (a in arrays and not a.const):
                 item = camel(kind) if kind in h.structs else self.plain(kind)
@@ -501,20 +556,23 @@ class Writer:
                 if capacity:
                     pre.append("capacity = %s" % ("64" if "finding" in kind else "%s._number(_lib.%s(%s, None, 0))" % (world, f.name, ", ".join(pass_on))))
                 whole = item if width == 1 else "(%s*%d)" % (item, width)
-                pre.append("%s = (%s*max(%s, 1))()" % (a.name, whole, size))
+                if size in ("count", "class_count") and not counted:
+                    pre.append("%s = (%s*_size_of(%s, %r))()" % (a.name, whole, size, "%s: %s" % (where, size)))
+                else:
+                    pre.append("%s = (%s*max(%s, 1))()" % (a.name, whole, size))
                 pass_on.append("ctypes.cast(%s, ctypes.POINTER(%s))" % (a.name, item))
                 outs.append((a.name, size))
             elif a.name == "capacity":
                 pass_on.append("capacity")
             elif a.pointer and kind in HANDLES:
                 params.append((a.name, None))
-                pass_on.append(a.name + "._at")
+                pass_on.append("_handle_of(%s, %s, %s)" % (a.name, HANDLES[kind], at(a)))
             elif a.pointer and kind == "FILE":
                 params.append(("out", "None"))
                 pass_on.append("FILE")
             elif a.pointer and kind in h.structs and not a.const and kind in self.free and f.name.endswith("_place"):
                 params.append((a.name, None))
-                pass_on.append(a.name)
+                pass_on.append("_struct_of(%s, %s, %s)" % (camel(kind), a.name, at(a)))
             elif a.pointer and kind in h.structs and not a.const:
                 pre.append("%s = %s()" % (a.name, camel(kind)))
                 pass_on.append(a.name)
@@ -524,28 +582,31 @@ class Writer:
                 pass_on.append(a.name)
             elif a.pointer and kind in h.structs:
                 params.append((a.name, None))
-                pre.append("%s = %s" % (a.name, "%s._bound(%s.make(%s))" % (world, camel(kind), a.name) if owner else "%s.make(%s)" % (camel(kind), a.name)))
+                make = "_struct_of(%s, %s, %s)" % (camel(kind), a.name, at(a))
+                pre.append("%s = %s" % (a.name, "%s._bound(%s)" % (world, make) if owner else make))
                 pass_on.append(a.name)
             elif a.pointer and kind == "char":
                 params.append((a.name, None))
-                pass_on.append("os.fsencode(%s)" % a.name if a.name == "path" else "%s.encode()" % a.name)
+                pass_on.append("_text_of(%s, %s)" % (a.name, at(a)))
             elif a.pointer and kind == "void":
                 params.append((a.name, None))
                 if a.name == "data":
-                    pre.append("data = data.encode() if isinstance(data, str) else bytes(data)")
+                    pre.append("data = _data_of(data, %s)" % at(a))
                 pass_on.append(a.name)
             elif a.name == "size" and i and args[i - 1].name == "data":
                 pass_on.append("len(data)")
             elif kind in h.enums:
                 params.append((a.name, "0" if owner and a is args[-1] else None))
-                pass_on.append("_number(%s, %s)" % (a.name, camel(kind)))
+                pass_on.append("_enum_of(%s, %s, %s)" % (a.name, camel(kind), at(a)))
             elif kind == "dem_region":
                 params.append((a.name, None))
-                pass_on.append("%s._bound(Region.make(%s))" % (world, a.name))
+                pass_on.append("%s._bound(_struct_of(Region, %s, %s))" % (world, a.name, at(a)))
             else:
                 last = all(x.pointer or x.type in h.calls or x.name == "user" for x in args[i + 1:])
                 default = "None" if kind == "dem_box" and last else "(1, 0, 0, 0)" if a is args[-1] and a.name == "orientation" else "0" if optional or (f.name, a.name) in ZEROS else None
                 params.append((a.name, default))
+                if default == "None":
+                    self.nulls.setdefault(f.name, set()).add(a.name)
                 pass_on.append(a.name)
         # -- keyword arguments for the fields of a desc --
         star, given = [], ""
@@ -569,7 +630,7 @@ class Writer:
             else:
                 pre.append("%s = %s(%s)" % (a.name, camel(kind), ", ".join("%s=%s" % (m, m) for m, _ in star)))
             key = ", (%r, self)" % f.name if owner not in HANDLES else ""
-            if any(m.call or m.type in h.calls or m.type in ("dem_motion",) for m in members):
+            if any(m.call or m.type in h.calls or m.type in ("dem_motion", "dem_region") or m.type in self.ids for m in members):
                 pre.append("%s = %s._bound(%s%s)" % (a.name, world, a.name, key))
             note = None
             for m in members:
@@ -599,10 +660,17 @@ class Writer:
         body = pre + self.ending(f, owner, world, call, outs, params)
         for line in body:
             inner = line[:len(line) - len(line.lstrip())]
-            for piece in textwrap.wrap(line, 114 - len(pad), subsequent_indent=inner + "    ", break_long_words=False, break_on_hyphens=False):
+            for piece in folded(line, 114 - len(pad), inner + "    "):
                 self.write(pad + "    " + piece)
         if owner:
             self.names.setdefault(owner, []).append(name)
+
+    def setter(self, f, owner):
+        """What changes the values that a function returns, as an argument of _with."""
+        other = next((g for g in self.h.functions if g.name == f.name[:-4] + "_set" and self.owner(g) == owner), None)
+        if not other:
+            return ""
+        return ", 'call %s.%s(...), which changes the fields that it is given'" % (camel(owner), self.short(other, owner))
 
     def default(self, m):
         if m.call or m.pointer or m.type in self.h.calls or m.type in self.ids or m.type in self.h.structs:
@@ -626,11 +694,17 @@ class Writer:
             if f.type == "char" and f.star:
                 return ["return (%s or b'').decode()" % call]
             return ["return " + call]
+        if f.name == "dem_group_get":
+            return ["found = " + call, "%s._ok(0)" % world, "if not found:", "    %s._raise(ArgumentError)" % world,
+                    "found._of = %s" % world, "return found"]
+        if f.name == "dem_body_id_get":
+            return ["return %s.bodies[index]" % world]
         if f.type == "dem_result" and (re.search(r"_(step|run|run_to|settle)$", f.name)):
             head, inner = call.split("(", 1)
             run = "%s._ok(%s._run(%s, %s)" % (world, world, head, inner)
             if f.name.endswith("_step"):            # without functions of yours there is nothing to interrupt
-                return ["%s._ok(%s._run(%s, %s if %s._context.kept else %s)" % (world, world, head, inner, world, call)]
+                return ["%s._ok(%s._run(%s, %s if %s._context.kept or %s._context.runs else %s)" % (
+                    world, world, head, inner, world, world, call)]
             return [run] + (["return " + ", ".join(name for name, _ in outs)] if outs else [])
         if f.type == "dem_result":
             lines = ["%s._ok(%s)" % (world, call)]
@@ -641,7 +715,7 @@ class Writer:
                     if a.type in self.free:
                         lines.append("%s = %s._taken(%s, _lib.%s)" % (o, world, o, self.free[a.type]))
                     elif a.type in h.structs and size is None:
-                        lines.append("%s._with(%s)" % (world, o))
+                        lines.append("%s._with(%s%s)" % (world, o, self.setter(f, owner)))
                     if a.type in self.ids and size:
                         lines.append("%s = [item.of(%s) for item in %s]" % (o, world, o))
                     shown.append(o)
@@ -660,12 +734,14 @@ class Writer:
             return ["found = " + call, "%s._ok(0)" % world, "return %s._with(found)" % world]
         if f.type == "int" and outs:
             o, size = outs[0]
+            kinds = {a.name: a.type for a in f.arguments}
             if f.name.endswith("classes_get"):
                 return ["found = %s" % call, "%s._filled(found, 0, %r)" % (world, f.name),
                         "return %s" % ", ".join("list(%s[:found])" % o for o, _ in outs)]
             if size == "capacity" and "finding" not in o:
                 return ["count = %s._number(%s)" % (world, call), "array = (%s._type_*count).from_buffer(%s)" % (o, o),
-                        "return array"]
+                        "return [item.of(%s) for item in array]" % world if kinds[o] in self.ids else
+                        "return Structs(array)" if kinds[o] in h.structs else "return array"]
             return ["count = %s._number(%s)" % (world, call), "return list(%s[:min(count, len(%s))])" % (o, o)]
         if f.type == "int" and re.search(r"_(fill|pack)$", f.name):
             return ["return %s._filled(%s, count, %r)" % (world, call, f.name)]
@@ -684,6 +760,21 @@ class Writer:
             if f.name not in hidden:
                 self.method(f, name)
 
+    def errors(self):
+        self.write("\n# ---- errors, one for each result " + "-"*66)
+        self.enum("dem_result")
+        self.write(ERROR)
+        self.write("\n\n_ERRORS = {}")
+        for value, number, note in self.h.enums["dem_result"][0]:
+            if number:
+                word = value[len("DEM_ERROR_"):]
+                base = ", " + BUILTIN[word] if word in BUILTIN else ""
+                self.write("\n\nclass %sError(Error%s):" % (camel(word.lower()), base))
+                self.write(doc_lines(4, note))
+                self.write("    result = Result.ERROR_%s" % word)
+                self.write("\n\n_ERRORS[%d] = %sError" % (number, camel(word.lower())))
+        self.write(WRONG)
+
     def file(self):
         h = self.h
         self.names = {}
@@ -698,20 +789,25 @@ class Writer:
             self.write("%s dempy_%s(%s) { %s%s(%s); }" % (f.result, f.name[4:], args, "" if f.type == "void" else "return ", f.name,
                                                           ", ".join(a.name for a in f.arguments)))
         self.write('"""\n')
+        self.write("_LAW_NEEDS = {      # numbers of contact history that a built-in law needs, and leading vectors among them")
+        needs = {}
+        for f in inline:
+            found = re.search(r"Contact history: (\d+) reals?\b(, the vector)?", f.doc)
+            as_for = re.search(r"Contact history as for dem_(\w+)", f.doc)
+            if f.name.startswith("dem_law_") and len(f.arguments) == 3 and f.arguments[1].name == "memory":
+                needs[f.name[4:]] = needs[as_for.group(1)] if as_for else (
+                    int(found.group(1)), int(bool(found.group(2)))) if found else (0, 0)
+                if not (found or as_for or "o contact history" in f.doc):
+                    fail("the comment of %s does not say what contact history it needs" % f.name)
+                self.write("    %r: %r," % (f.name[4:], needs[f.name[4:]]))
+        self.write("}\n")
+        self.errors()
         with open(os.path.join(HERE, "base.py")) as file:
             self.write(file.read())
-        self.write("\n# ---- errors, one for each result " + "-"*66)
+        self.write("\n# ---- enums " + "-"*87)
         for name in h.enums:
-            self.enum(name)
-        self.write("\n\n_ERRORS = {}")
-        for value, number, note in h.enums["dem_result"][0]:
-            if number:
-                word = value[len("DEM_ERROR_"):]
-                base = ", " + BUILTIN[word] if word in BUILTIN else ""
-                self.write("\n\nclass %sError(Error%s):" % (camel(word.lower()), base))
-                self.write(doc_lines(4, note))
-                self.write("    result = Result.ERROR_%s" % word)
-                self.write("\n\n_ERRORS[%d] = %sError" % (number, camel(word.lower())))
+            if name != "dem_result":
+                self.enum(name)
         done = set()
 
         def need(name):
@@ -750,6 +846,7 @@ class Writer:
                         textwrap.fill("self._create(WorldDesc(%s))" % ", ".join("%s=%s" % (m.name, m.name) for m in members), 108,
                                       initial_indent=" "*8, subsequent_indent=" "*12))
         h.functions.remove(create)
+        self.create = create
         self.handle("dem_world", init)
         self.handle("dem_replay", REPLAY)
         self.handle("dem_slabs", SLABS)
@@ -761,15 +858,58 @@ class Writer:
         for f in [create] + h.functions:
             if f not in inline and f.inline:
                 continue
-            for line in textwrap.wrap(self.signature(f) + ",", 114, subsequent_indent=" ", break_long_words=False, break_on_hyphens=False):
+            for line in folded(self.signature(f) + ",", 114, " "):
                 self.write("    " + line)
+        for name, result, arguments in EXTRA:
+            self.write("    (%r, %s, [%s], %r, ['self']*%d)," % (name, result, arguments, name, len(arguments.split(", "))))
         self.write("]")
+        self.write("\nfor _name in %s:" % '[name for name in Bodies.kinds if name not in ("count", "real_count")]')
+        self.write("    setattr(Rows, _name, _row_property(_name, next(doc for name, _, doc in Bodies.rows if name == _name)))")
         for owner, names in self.names.items():
             for name in names:
                 if names.count(name) > 1:
                     fail("two functions become %s.%s" % (owner, name))
         return "\n".join(self.out) + "\n"
 
+
+BASES = {"dem_vec3": "Vector", "dem_quat": "Numbers"}
+# functions that dem.py adds to the library; loaded where they are there
+EXTRA = [("dempy_rows", "ctypes.c_int", "ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_int, ctypes.c_void_p"),
+         ("dempy_ids", "ctypes.c_int", "ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p"),
+         ("dempy_put", "ctypes.c_int", "ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p")]
+
+ERROR = '''
+
+class Error(Exception):
+    """A call of dem.h has failed. The text is the error message of dem.h: the function, what is wrong with the value,
+    the limit, the likely cause, the remedy. result: the dem.Result."""
+    result = None
+'''
+
+WRONG = '''
+
+class ArgumentTypeError(Error, TypeError):
+    """An argument or a field has a wrong type. The text names the call, the argument, what is given and what is wanted."""
+    result = Result.ERROR_ARGUMENT
+
+
+class ArgumentRangeError(Error, OverflowError):
+    """A number does not fit into the type of C."""
+    result = Result.ERROR_ARGUMENT
+
+
+class FieldError(Error, AttributeError):
+    """An assignment to what cannot be set. The text names the call that changes it."""
+    result = Result.ERROR_ARGUMENT
+
+
+class LoadError(Error, ImportError):
+    """The library cannot be compiled or loaded."""
+
+
+class NoSuchError(ArgumentError, IndexError):
+    """There is no body of this number."""
+'''
 
 ZEROS = {("dem_world_settle", "speed"), ("dem_effects_get", "budget"), ("dem_effects_print", "budget"),
          ("dem_ellipsoids_contact_get", "lambda_"), ("dem_temperature_set", "seed"),
@@ -802,13 +942,17 @@ below are the comments of dem.h, which name C functions. Rules of names:
 """
 import ctypes
 import enum
+import functools
+import gc
 import hashlib
 import html
+import io
 import math
 import operator
 import os
 import platform
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -819,7 +963,8 @@ import weakref
 try:
     import _signal              # signal.signal takes 15 us
 except ImportError:
-    import signal as _signal
+    _signal = signal
+_refs = sys.getrefcount
 '''
 
 WORLD = '''

@@ -100,7 +100,7 @@ def main():
         def loops(side, layers, n):
             """Seconds of a step: in a loop in C, in a loop in Python."""
             world, _ = bed(side, layers, law=None)
-            step = ctypes.cast(dem._lib.dem_world_step, ctypes.c_void_p)
+            step = ctypes.cast(dem._lib.dem_world_step.entry, ctypes.c_void_p)
             in_c = seconds(lambda: c.loop(step, world._at, n))
             world, _ = bed(side, layers, law=None)          # the same states again
             in_python = seconds(lambda: [world.step(1) for _ in range(n)])
@@ -114,6 +114,7 @@ def main():
         ball = world.body_id(0)
         n = 10000
         for name, function in (("time", lambda: world.time), ("state", lambda: ball.state), ("positions", lambda: world.bodies.positions),
+                               ("memory", lambda: world.bodies_memory.positions),
                                ("run", lambda: world.run(0))):
             put("call.%s" % name, 1e6*seconds(lambda: [function() for _ in range(n)])/n, "us")
 

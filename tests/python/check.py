@@ -27,7 +27,7 @@ ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 PYTHON = os.path.join(ROOT, "examples", "python")
 os.environ.setdefault("DEM_BUILD", os.path.join(ROOT, "build"))
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
-sys.path.insert(0, PYTHON)
+sys.path[:0] = [PYTHON, os.path.dirname(os.path.abspath(__file__))]
 sys.dont_write_bytecode = True
 import dem  # noqa: E402
 
@@ -91,18 +91,18 @@ def _():
                          (lambda: world.material(density=True, young=1e6, restitution=0.5), "MaterialDesc.density", "True"),
                          (lambda: dem.World(threads=1.5), "WorldDesc.threads", "1.5"),
                          (lambda: dem.World(body_reals=5), "WorldDesc.body_reals"),
-                         (lambda: world.step(1.5), "dem_world_step", "1.5"), (lambda: world.step(text), "dem_world_step"),
-                         (lambda: world.sphere(glass, text, (0, 0, 1)), "dem_sphere_add"),
-                         (lambda: world.sphere(glass, 0.001, (0, 0, text)), "dem_sphere_add", "Vec3.z"),
+                         (lambda: world.step(1.5), "World.step: steps: ", "1.5"), (lambda: world.step(text), "World.step: steps: "),
+                         (lambda: world.sphere(glass, text, (0, 0, 1)), "World.sphere: radius: "),
+                         (lambda: world.sphere(glass, 0.001, (0, 0, text)), "World.sphere: position: ", "Vec3.z"),
                          (lambda: dem.FeedDesc(radius=(0.001, text)), "FeedDesc.radius"),
                          (lambda: setattr(dem.WorldDesc(), "threads", text), "WorldDesc.threads"),
                          (lambda: copy.deepcopy(world), "World", "copied")):
         raises(TypeError, call, *words)
     for wide in (2**32 + 1, -2**32 + 2, 2**31, 2**64):
-        raises(OverflowError, lambda: world.step(wide), "dem_world_step", str(wide))
+        raises(OverflowError, lambda: world.step(wide), "World.step", str(wide))
         raises(OverflowError, lambda: dem.World(threads=wide), "WorldDesc.threads", str(wide))
         raises(OverflowError, lambda: setattr(dem.WorldDesc(), "threads", wide), "WorldDesc.threads")
-    raises(ValueError, lambda: dem.Selection(bodies=[world.body_id(0)], count=100), "Selection.count", "100")
+    raises(ValueError, lambda: dem.Selection(bodies=[dem.Body(1, 0)], count=100), "Selection.count", "100")
     same(dem.Region(box=(0, 0, 0, 1, 1, 1), cylinder="z").cylinder, ord("z"))
     world.step(2)
 
@@ -216,7 +216,7 @@ def _():
 def _():
     with heap()[0] as world:
         pass
-    raises(dem.Error, lambda: world.run(1), "null")
+    raises(dem.Error, lambda: world.run(1), "World.run: this world is closed")
     world.close()
 
 
@@ -284,7 +284,7 @@ def _():
     os.rmdir(folder)
     raises(dem.FileError, world.close, "x.html")
     for replay in replays:
-        raises(dem.Error, replay.frame_write, "null")
+        raises(dem.Error, replay.frame_write, "this replay is closed")
     same([os.path.getsize(path) > 1000 for path in paths], [True]*6, "files")
     del positions
 
@@ -336,24 +336,62 @@ def _():
 
 # ---- buffers ----
 
-@test("arrays of bodies are views of the memory of the library, and read only")
+@test("rows of world.bodies are in the order of adding, also after the neighbour list was rebuilt, and numpy takes them")
+def _():
+    world, glass = heap()
+    grid = [(0.004*i, 0.004*j, 0.01 + 0.004*k) for k in reversed(range(6)) for j in range(6) for i in reversed(range(6))]
+    world.spheres(glass, grid, radius=0.001)
+    same([row[:3] for row in world.bodies.positions.tolist()], [list(point) for point in grid])
+    world.step(1)
+    same(world.bodies_memory.slots.tolist() != sorted(world.bodies_memory.slots.tolist()), True, "dem.h has sorted its rows")
+    moved = max(abs(a - b) for row, point in zip(world.bodies.positions.tolist(), grid) for a, b in zip(row, point))
+    same(moved < 1e-6, True, "m moved in a step: %g" % moved)
+    bodies = world.bodies
+    same(bodies.slots.tolist(), list(range(216)))
+    same((len(bodies), len(world), len(list(bodies)), bodies[7].slot, bodies[-1].slot, world.body_id(3)), (216, 216, 216, 8, 216, bodies[3]))
+    same([body.state.position.x for body in bodies[:3]], [row[0] for row in bodies.positions.tolist()[:3]])
+    raises(IndexError, lambda: bodies[216], "216")
+    raises(dem.Error, lambda: world.body_id("a"), "'a'")
+    raises(TypeError, lambda: bodies.positions.__setitem__((0, 0), 1.0))
+    bodies[0].remove()
+    same((len(bodies), bodies[0].slot, bodies.positions.tolist()[0][:2]), (215, 2, bodies[0].state.position[:2] and list(bodies[0].state.position[:2])))
+    world.step(1)
+    late = world.sphere(glass, 0.001, (0, 0, 0.5))
+    same((late.slot, bodies[0]), (1, late), "a body that is added after another was removed takes its place")
+    same(dem.World().bodies.count, 0)
+    same(dem.World().bodies.positions, None)
+
+
+@test("world.bodies_memory has the arrays of the library without a copy, and read only")
 def _():
     world, glass = heap()
     world.spheres(glass, [(0, 0, 1), (1, 0, 1)], velocities=[(1, 2, 3), (4, 5, 6)], radii=[0.01, 0.02])
-    bodies = world.bodies
+    bodies = world.bodies_memory
     same(bodies.positions.shape, (2, 4))
     same(bodies.velocities.tolist(), [[1, 2, 3, 0], [4, 5, 6, 0]])
-    same(bodies.radii if hasattr(bodies, "radii") else bodies.positions[1, 3], 0.02)
     before = bodies.positions
     world.body_id(0).set(position=(7, 0, 1))
     same(world.bodies.positions[0, 0], 7.0)
     same(before[0, 0], 7.0, "the view sees the change: no copy")
     raises(TypeError, lambda: bodies.positions.__setitem__((0, 0), 1.0))
     same(bodies.slots.tolist(), [0, 1])
-    same(dem.World().bodies.count, 0)
 
 
-@test("numpy views positions without a copy, and arrays of numpy are accepted")
+@test("all positions, velocities and spins are set by one assignment")
+def _():
+    world, glass = heap()
+    world.spheres(glass, [(0.1*i, 0, 1) for i in range(5)], radius=0.01)
+    world.bodies.velocities = [(i, 0, 1) for i in range(5)]
+    world.bodies.spins = [(0, i, 0) for i in range(5)]
+    same([body.state.velocity.x for body in world.bodies], [0, 1, 2, 3, 4])
+    same([row[1] for row in world.bodies.spins.tolist()], [0, 1, 2, 3, 4])
+    raises(ValueError, lambda: setattr(world.bodies, "velocities", [(1, 2, 3)]), "World.bodies.velocities", "(1, 3)", "(5, 3)")
+    raises(AttributeError, lambda: setattr(world.bodies, "masses", [1]*5), "World.bodies.masses")
+    columns = world.bodies.to_dict()
+    same((columns["vx"], len(columns["mass"])), ([0, 1, 2, 3, 4], 5))
+
+
+@test("numpy views rows without a copy, and arrays of numpy are accepted")
 def _():
     try:
         import numpy
@@ -362,15 +400,31 @@ def _():
         return
     world, glass = heap()
     world.spheres(glass, numpy.arange(30.0).reshape(10, 3) + [0, 0, -1.901], radii=numpy.full(10, 0.1))
-    view = numpy.asarray(world.bodies.positions)
-    same(view.shape, (10, 4))
+    view = numpy.asarray(world.bodies_memory.positions)
+    same((view.shape, numpy.asarray(world.bodies.positions).shape), ((10, 4), (10, 4)))
     world.body_id(3).set(position=(-5, 0, 50))
     same(view[3, 0], -5.0)
     world.step(1)
     same(len(world.contacts), 1)
-    kind = numpy.dtype(dem.ContactInfo)                     # numpy.asarray(world.contacts) gives it with a warning
-    contacts = numpy.frombuffer(world.contacts, kind) if len(world.contacts) else numpy.zeros(1, kind)
+    kind = numpy.dtype(dem.ContactInfo)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        contacts = numpy.asarray(world.contacts)
+    same((contacts.dtype, contacts.shape), (kind, (1,)))
     same((kind.names[:2], kind.itemsize, contacts["point"]["z"].dtype), (("a", "b"), ctypes.sizeof(dem.ContactInfo), numpy.dtype("f8")))
+    for array in (numpy.eye(3, dtype=">f8"), numpy.eye(3, dtype="f2"), numpy.eye(3, dtype="i8"), numpy.asfortranarray(numpy.eye(3)),
+                  numpy.arange(18.0).reshape(3, 6)[:, ::2]):
+        other, glass = heap()
+        other.spheres(glass, array, radius=0.01)
+        same([row[:3] for row in other.bodies.positions.tolist()], array.tolist())
+    for array in (numpy.zeros((2, 4)), numpy.zeros((3, 4)), numpy.zeros((2, 2, 2)), numpy.array([[1j, 0, 0]]), numpy.array([[True]*3]),
+                  numpy.array([["a", "b", "c"]]), numpy.array([[1, 2, None]], dtype=object)):
+        raises(dem.Error, lambda: other.spheres(glass, array, radius=0.01), "World.spheres: positions: ")
+    raises(dem.Error, lambda: other.spheres(glass, numpy.array(1.0), radius=0.01), "World.spheres: positions: ")
+    v = dem.Vec3(3, 4, 0)
+    same((numpy.linalg.norm(v), (numpy.ones(3) + v).tolist(), (v*numpy.ones(3)).tolist(), numpy.array(tuple(v)).tolist()),
+         (5.0, [4, 5, 1], [3, 4, 0], [3, 4, 0]))
+    same((numpy.dot(v, (1, 2, 3)), numpy.cross(v, v).tolist(), numpy.sqrt(dem.Vec3(4, 9, 16)).tolist()), (11.0, [0, 0, 0], [2, 3, 4]))
 
 
 @test("arrays are taken from lists, tuples, buffers and arrays of ctypes")
@@ -386,7 +440,239 @@ def _():
     same(len(hashes), 1, "digests")
 
 
+@test("an array whose last axis does not fit raises ValueError with both shapes")
+def _():
+    world, glass = heap()
+    for positions, *words in (([(0, 0, 0, 1)], "(4,)", "(N, 3)"), ([(0, 0, 1), (0, 0)], "(2,)", "(N, 3)"), ([(0, 0)]*3, "(2,)", "(N, 3)"),
+                              ([1, 2, 3, 4], "4 numbers", "(N, 3)"), ([1, (1, 2, 3)], "mixed"), ([], "World.spheres")):
+        if positions:
+            raises(ValueError, lambda: world.spheres(glass, positions, radius=0.01), "World.spheres: positions: ", *words)
+    for positions in ("abc", b"abc", {"x": 1}, {1, 2, 3}, 5, None, dem, [["a", "b", "c"]], [{"x": 1}]*3, object()):
+        raises(TypeError, lambda: world.spheres(glass, positions, radius=0.01), "World.spheres: positions: ")
+    view = memoryview((ctypes.c_double*18)()).cast("B").cast("d", [3, 6])
+    error = raises(ValueError, lambda: world.spheres(glass, view, radius=0.01), "(3, 6)", "(N, 3)", "transpose")
+    same(isinstance(error, dem.Error), True)
+    raises(ValueError, lambda: world.spheres(glass, [(0, 0, 1), (1, 0, 1)], [(0, 0, 1)], radius=0.01), "velocities", "(1, 3)", "(2, 3)")
+    raises(ValueError, lambda: world.spheres(glass, [(0, 0, 1), (1, 0, 1)], radii=[1, 2, 3]), "radii", "(3,)", "(2,)")
+    shape = world.shape_ellipsoid((3e-3, 2e-3, 2e-3))
+    raises(ValueError, lambda: world.bodies_add(glass, shape, [(0, 0, 1)], orientations=[(1, 0, 0)]), "orientations", "(3,)", "(1, 4)")
+    raises(ValueError, lambda: dem.Mesh(vertices=[(0, 0), (1, 0), (0, 1)]), "Mesh.vertices", "(2,)", "(N, 3)")
+    loop = []
+    loop.append(loop)
+    raises(dem.Error, lambda: world.spheres(glass, loop, radius=0.01), "positions")
+
+    class Table:
+        """What a table of pandas has."""
+        shape = (2, 3)
+
+        def __init__(self, rows):
+            self.rows = rows
+
+        def __array__(self, dtype=None, copy=None):
+            import numpy
+            return numpy.array(self.rows)
+
+        def __len__(self):
+            return 3
+
+        def __iter__(self):
+            return iter("xyz")
+    try:
+        import numpy  # noqa: F401
+    except ImportError:
+        return
+    world.spheres(glass, Table([[1, 2, 3.5], [4, 5, 6.5]]), radius=0.01)
+    same([row[:3] for row in world.bodies.positions.tolist()], [[1, 2, 3.5], [4, 5, 6.5]])
+
+
+@test("a count that is not that of its array raises ValueError")
+def _():
+    two = [(0, 0, 0), (1e-3, 0, 0)]
+    for call, *words in ((lambda: dem.ClusterDesc(count=50, positions=two, radius=1e-3), "ClusterDesc.count is 50", "2 elements"),
+                         (lambda: dem.ClusterDesc(count=1, positions=two, radius=1e-3), "ClusterDesc.count is 1"),
+                         (lambda: dem.ClusterDesc(positions=two, radii=[1e-3]), "ClusterDesc.radii has 1 element", "positions has 2"),
+                         (lambda: dem.ClusterDesc(count=2), "ClusterDesc.count is 2", "no elements"),
+                         (lambda: dem.Mesh(vertex_count=300, vertices=[(0, 0, 0)]), "Mesh.vertex_count is 300"),
+                         (lambda: dem.Mesh(vertex_count=3, triangle_count=1), "Mesh.vertex_count is 3"),
+                         (lambda: setattr(dem.Mesh(vertices=[(0, 0, 0)]), "vertex_count", 7), "Mesh.vertex_count is 7"),
+                         (lambda: dem.Grains(count=9, positions=two, radii=[1, 1]), "Grains.count is 9"),
+                         (lambda: dem.Grains(positions=two, radii=[1]), "Grains.radii has 1"),
+                         (lambda: dem.FeedDesc(radius=[1e-3, 2e-3], amount=[1]), "FeedDesc.amount has 1"),
+                         (lambda: dem.FeedDesc(radius=[1e-3], amount=[1, 2]), "FeedDesc.amount has 2"),
+                         (lambda: dem.FeedDesc(radius=[1e-3]*17), "FeedDesc.radius", "at most 16"),
+                         (lambda: dem.Sizes(radius=[1, 2, 3], passing=[0, 1]), "Sizes.passing has 2"),
+                         (lambda: dem.CellDesc(rate=(1, 2)), "CellDesc.rate")):
+        raises(ValueError, call, *words)
+    mesh = dem.Mesh(vertices=[(0, 0, 0), (1, 0, 0)])
+    mesh.vertices = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    same((mesh.vertex_count, dem.Mesh(vertex_count=1, vertices=[(0, 0, 0)]).vertex_count), (3, 1))
+
+
+@test("an assignment to a world, an id or a copy of a state sets it or raises AttributeError that names the call")
+def _():
+    world, glass = heap()
+    wall = world.wall_plane(glass, (0, 0, 5), (0, 0, -1))
+    ball = world.sphere(glass, 0.01, (0, 0, 1))
+    world.gravity, world.dt = (0, 0, -1), 1e-5
+    same((world.gravity, world.dt, world.desc.gravity.z), ((0, 0, -1), 1e-5, -1.0))
+    state = ball.state
+    for target, name, *words in ((world, "threads", "World(threads=...)"), (world, "friction", "friction"), (world, "time", "World.time"),
+                                 (world, "run", "World.run"), (ball, "velocity", "Body.velocity", "set"), (state, "velocity", "Body.set"),
+                                 (state.velocity, "x", "Body.set"), (glass.desc, "friction", "Material.set"), (wall, "id", "Wall"),
+                                 (world.totals, "mass", "Totals.mass"), (world.desc, "dt", "WorldDesc.dt"),
+                                 (dem.Motion(), "sped", "sped", "velocity")):
+        error = raises(AttributeError, lambda: setattr(target, name, 1), *words)
+        same(isinstance(error, dem.Error), True, name)
+    copied = copy.copy(state)
+    copied.velocity = (1, 2, 3)
+    copied.velocity.x = 7
+    same((copied.velocity, state.velocity, ball.state.velocity), ((7, 2, 3), (0, 0, 0), (0, 0, 0)))
+
+
+@test("an unknown group raises with the names that there are, and removes nothing")
+def _():
+    world = dem.World(groups=["top", "low"])
+    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5)
+    world.sphere(glass, 0.01, (0, 0, 1))
+    raises(ValueError, lambda: world.bodies_remove(group=world.group("tpo")), "tpo", "top low")
+    raises(ValueError, lambda: heap()[0].group("top"), "top")
+    same((world.bodies.count, world.bodies_remove(group=world.group("low")), world.bodies_remove()), (1, 0, 1))
+
+
+@test("calls that mean nothing are refused: None for a vector, two of three numbers, one word of three, ids of other worlds")
+def _():
+    world, glass = heap()
+    other, steel = heap()
+    body = other.sphere(steel, 0.01, (0, 0, 1))
+    for kind, call, *words in (
+            (TypeError, lambda: world.sphere(glass, 0.01, None), "World.sphere: position: None"),
+            (TypeError, lambda: world.sphere(None, 0.01, (0, 0, 1)), "World.sphere: material: None", "Material"),
+            (TypeError, lambda: world.sphere(1, 0.01, (0, 0, 1)), "World.sphere: material: 1 (int)"),
+            (TypeError, lambda: world.sphere(body, 0.01, (0, 0, 1)), "World.sphere: material: Body"),
+            (ValueError, lambda: dem.World(gravity=(0, -9.81)), "WorldDesc.gravity: 2 numbers", "3"),
+            (ValueError, lambda: dem.World(domain=(1, 1, 1)), "WorldDesc.domain", "3"),
+            (TypeError, lambda: dem.World(gravity="down"), "WorldDesc.gravity", "down"),
+            (TypeError, lambda: dem.World(gravity=-9.81), "WorldDesc.gravity", "-9.81"),
+            (ValueError, lambda: dem.World(boundary=["periodic"], domain=(0, 0, 0, 1, 1, 1)), "WorldDesc.boundary", "1", "3"),
+            (TypeError, lambda: dem.World(boundary="periodic"), "WorldDesc.boundary", "3 words"),
+            (ValueError, lambda: dem.World(normal_law=77), "WorldDesc.normal_law", "77", "hertz"),
+            (TypeError, lambda: dem.Vec3(1, 2), "Vec3", "2 values"),
+            (ValueError, lambda: world.sphere(steel, 0.01, (0, 0, 1)), "World.sphere: material", "another world"),
+            (ValueError, lambda: world.joint(kind="revolute", a=body), "World.joint: a: ", "another world"),
+            (ValueError, lambda: world.bodies_remove(material=steel), "World.bodies_remove: material: ", "another world"),
+            (ValueError, lambda: world.bodies_select(dem.Selection(bodies=[body])), "bodies[0]", "another world"),
+            (ValueError, lambda: world.sphere(glass, -1, (0, 0, 1)), "radius"),
+            (ValueError, lambda: world.spheres(glass, [(0, 0, 1)], radii=[-1]), "radi")):
+        same(isinstance(raises(kind, call, *words), dem.Error), True)
+    other.close()
+    raises(ValueError, lambda: world.sphere(steel, 0.01, (0, 0, 1)), "closed")
+    raises(ValueError, lambda: body.state, "closed")
+    same(world.bodies.count, 0)
+
+
 # ---- functions ----
+
+@test("a law, a force or a motion that returns a number, and an observer that returns none, are refused by name")
+def _():
+    for more, name in (({"law": lambda c, memory, force: 1.5, "law_stiffness": 1e4}, "law"), ({"force": lambda *_: None}, "force"),
+                       ({"force": lambda *_: (1, 2)}, "force"), ({"body_force": lambda *_: (0, 0, 1)}, "body_force")):
+        world, glass = heap(**more)
+        world.sphere(glass, 0.01, (0, 0, 0.0099))
+        same(isinstance(raises(TypeError, lambda: world.run(0.1), name, "returned" if name != "force" else "return"), dem.Error), True)
+    world, glass = heap()
+    wall = world.wall_plane(glass, (0, 0, 5), (0, 0, -1))
+    world.sphere(glass, 0.01, (0, 0, 1))
+    raises(TypeError, lambda: (wall.motion_set(kind="user", function=lambda time, pose: 0), world.run(0.1)), "motion", "returned 0")
+    world, glass = heap()
+    world.spheres(glass, [(0, 0, 0.1), (1, 0, 0.1)], radius=0.01)
+    raises(TypeError, lambda: world.trials_run(duration=.01, budget=.1, observables=[dem.Observable(name="a", function=lambda w: None)]),
+           "observer", "None was returned", "number")
+
+
+@test("a struct that a function keeps raises instead of showing what dem.h writes there later")
+def _():
+    for name in ("law", "body_force", "motion"):
+        kept = []
+
+        def law(contact, memory, force):
+            kept.append(contact if len(kept) % 2 else contact.normal)
+
+        def lift(body, id, time, force, torque):
+            kept.append(body)
+
+        def move(time, pose):
+            kept.append(pose)
+        world, glass = heap(**{"law": {"law": law, "law_stiffness": 1e4}, "body_force": {"body_force": lift}}.get(name, {}))
+        wall = world.wall_plane(glass, (0, 0, 5), (0, 0, -1))
+        world.sphere(glass, 0.01, (0, 0, 0.0099))
+        raises(ValueError, lambda: (wall.motion_set(kind="user", function=move) if name == "motion" else None, world.run(0.1)),
+               "keeps its argument", "copy.copy")
+        same(len(kept), 1, name)
+    kept = []
+    world, glass = heap(body_force=lambda body, id, time, force, torque: kept.append(copy.copy(body)))
+    world.sphere(glass, 0.01, (0, 0, 0.5))
+    world.run(0.01)
+    same(len({body.position.z for body in kept}) > 3, True, "copies differ")
+
+
+@test("a built-in law without its contact history is refused by name")
+def _():
+    def run(function, **more):
+        world, glass = heap(law=function, law_stiffness=1e4, **more)
+        world.sphere(glass, 0.01, (0, 0, 0.0099))
+        world.run(0.001)
+    for law, needs in dem._LAW_NEEDS.items():
+        def call(c, memory, force):
+            getattr(dem, "law_" + law[4:])(c, memory, force)
+        if needs[0]:
+            raises(ValueError, lambda: run(call), "dem." + law, "law_memory=%d" % needs[0])
+        if needs[1]:
+            raises(ValueError, lambda: run(call, law_memory=needs[0]), "dem." + law, "law_vectors=1")
+        run(call, law_memory=needs[0], law_vectors=needs[1])
+    raises(ValueError, lambda: run(lambda c, m, f: dem.law_spring(c, dem.tail(m, 3), f), law_memory=5, law_vectors=1), "2 are here")
+    raises(ValueError, lambda: run(lambda c, m, f: dem.law_spring(c, dem.tail(m, 1), f), law_memory=5, law_vectors=1), "vector")
+    for memory in (None, [0, 0, 0], 5, "abc", (ctypes.c_float*3)()):
+        raises(TypeError, lambda: dem.law_spring(dem.Contact(), memory, dem.ContactForce()), "dem.law_spring: memory: ")
+    raises(TypeError, lambda: dem.law_spring(None, (dem.Real*3)(), dem.ContactForce()), "dem.law_spring: c: None")
+    raises(TypeError, lambda: dem.law_spring(dem.Contact(), (dem.Real*3)(), dem.Contact()), "dem.law_spring: f: ")
+
+
+@test("dem.compile makes a law of a text in C; another text, another precision and a wrong text are told apart")
+def _():
+    text = "#include \"dem.h\"\nvoid law(const dem_contact *c, dem_real *m, dem_contact_force *f) { (void)m; f->normal = %g*c->overlap; }\n"
+
+    def depth(stiffness):
+        world, glass = heap(law=dem.compile(text % stiffness).law, law_stiffness=1e5)
+        world.sphere(glass, 0.01, (0, 0, 0.01))
+        world.step(400)
+        return world.counters.overlap_max
+    same(depth(1e4) > 2*depth(1e5), True, "a softer law is indented deeper")
+    same(depth(1e4), depth(1e4))
+    path = os.path.join(WORK.name, "law.c")
+    with open(path, "w") as file:
+        file.write(text % 1e4)
+    same(dem.compile(path)._name, dem.compile(text % 1e4)._name)
+    raises(ValueError, lambda: dem.compile("#define DEM_REAL float\n" + text % 1), "4 bytes", "8") if dem.Real is ctypes.c_double else None
+    raises(ValueError, lambda: dem.compile("\nint law(void) { return wrong; }\n"), "does not compile", "source:2")
+    raises(TypeError, lambda: dem.compile(5), "dem.compile: source: 5")
+    raises(OSError, lambda: dem.compile("/nowhere/law.c"), "/nowhere/law.c")
+    other = ctypes.CDLL(compiled("float.so", "const int dempy_real_size = %d;\nvoid law(void) { }\n" % (12 - ctypes.sizeof(dem.Real)),
+                                 "-shared", "-fPIC"))
+    raises(ValueError, lambda: dem.World(law=other.law), "WorldDesc.law", "compiled for reals of")
+
+
+@test("a world is not closed by a function that it calls")
+def _():
+    for more in ({"law": lambda *_: world.close(), "law_stiffness": 1e4}, {"body_force": lambda *_: world.close()}, {}):
+        world, glass = heap(**more)
+        world.sphere(glass, 0.01, (0, 0, 0.0099))
+        if not more:
+            world.output(function=lambda copied, number: world.close(), interval=0.001)
+        raises(dem.Error, lambda: world.run(0.1), "World.close")
+        raises(dem.Error, lambda: world.spheres_fill(glass, 0.001, dem.Region(box=(0, 0, 1, 1, 1, 2), inside=lambda *_: world.close()), 1, 1),
+               "World.close")
+        world.close()
+
 
 LAWS = """
 #include "dem.h"
@@ -501,6 +787,58 @@ def _():
     timer.start()
     raises(KeyboardInterrupt, lambda: world.run(1e4))
     world.run(0.01)
+
+
+@test("Ctrl-C ends the runs of all threads within a second")
+def _():
+    code = ("import sys, os, signal, threading, time, concurrent.futures; sys.path.insert(0, %r); import dem\n"
+            "def job(k):\n"
+            "    world = dem.World(gravity=(0, 0, -9.81), threads=1)\n"
+            "    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5)\n"
+            "    world.wall_plane(glass, (0, 0, 0), (0, 0, 1))\n"
+            "    world.spheres_fill(glass, 2e-3, (-.02, -.02, 0, .02, .02, .2), 300, 1)\n"
+            "    world.run(100)\n"
+            "dem.load()\n"
+            "began = []\n"
+            "def interrupt():\n"
+            "    began.append(time.time())\n"
+            "    os.kill(os.getpid(), signal.SIGINT)\n"
+            "threading.Timer(0.5, interrupt).start()\n"
+            "try:\n"
+            "    with concurrent.futures.ThreadPoolExecutor(2) as pool:\n"
+            "        list(pool.map(job, range(4)))\n"
+            "except KeyboardInterrupt:\n"
+            "    print(time.time() - began[0])\n" % PYTHON)
+    done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, timeout=120)
+    same(done.stderr, "")
+    same(float(done.stdout) < 2, True, "s until all had ended: " + done.stdout)
+
+
+@test("one world in two threads is refused by name")
+def _():
+    world, glass = heap(threads=1)
+    world.spheres_fill(glass, 0.01, (-0.3, -0.3, 0, 0.3, 0.3, 0.4), 300, 1)
+    stop = threading.Event()
+    thread = threading.Thread(target=lambda: swallow(lambda: world.run(1e4, lambda *_: stop.is_set())))
+    thread.start()
+    try:
+        began = time.time()
+        while not world._context.runs and time.time() - began < 5:
+            time.sleep(0.01)
+        raises(dem.Error, lambda: world.run(1), "World.run: another thread runs this world")
+        raises(dem.Error, lambda: world.step(1), "another thread")
+        raises(dem.Error, world.close, "another thread")
+    finally:
+        stop.set()
+        thread.join()
+    world.run(1e-4)
+
+
+def swallow(function):
+    try:
+        function()
+    except dem.StoppedError:
+        pass
 
 
 @test("functions of outputs and replays see the world, and a CSV file gets what they return")
@@ -788,6 +1126,103 @@ def _():
         getattr(dem, "law_" + law)(given, memory, force)
     dem.law_load(given, force, 0)
     same(force.normal > 0 and dem.memory_rotate(given, (1, 0, 0)).x == 1, True)
+
+
+# ---- all calls ----
+
+@test("no call with wrong values in any argument ends the process, and each exception is a dem.Error")
+def _():
+    import walk
+    total, refused, accepted, wrong = walk.main(int(os.environ.get("JOBS") or os.cpu_count() or 1))
+    print("# %d calls: %d refused, %d accepted" % (total, refused, accepted))
+    same((wrong[:5], refused + accepted, total > 50000), ([], total, True))
+
+
+@test("messages of wrong calls name the call, the argument, what is given and what is wanted")
+def _():
+    world, glass = heap()
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    for call, text in ((lambda: world.sphere(glass, (0, 0, 1), 0.01), "World.sphere: radius: (0, 0, 1) (tuple) is given, a number is wanted"),
+                       (lambda: world.run("1"), "World.run: seconds: '1' (str) is given, a number is wanted"),
+                       (lambda: world.step(2**40), "World.step: steps: 1099511627776 is given, must be from -2147483648 to 2147483647"),
+                       (lambda: world.vtp_write(5), "World.vtp_write: path: 5 (int) is given, a text is wanted"),
+                       (lambda: world.vtp_write("a\0b"), "World.vtp_write: path: b'a\\x00b' (bytes) is given, a text without the character 0 is wanted"),
+                       (lambda: ball.set(velocity=3), "BodyState.velocity: 3 (int) is given, a Vec3, or 3 numbers (x, y, z) is wanted"),
+                       (lambda: world.run(1, progress=True), "World.run: True (bool) is given, a function is wanted"),
+                       (lambda: world.output_every("vtu", "a.vtu", 1), "World.output_every: kind: OutputKind has no 'vtu'; it has "),
+                       (lambda: world.report(5), "report: out: 5 (int) is given, a file of Python is wanted"),
+                       (lambda: world.slabs(axis="x"), "SlabsDesc.axis: 'x' (str) is given, a whole number is wanted"),
+                       (lambda: dem.World(body_reals=5), "WorldDesc.body_reals: 5 (int) is given, a text is wanted"),
+                       (lambda: copy.copy(world), "a World owns memory of dem.h and cannot be copied or pickled")):
+        error = raises(dem.Error, call)
+        same(str(error)[:len(text)], text)
+        same(isinstance(error, (ValueError, TypeError, OverflowError)), True)
+
+
+@test("structs are pickled, copied and compared; a process pool returns them; worlds refuse by name")
+def _():
+    import pickle
+    world, glass = heap(ledger=1, groups="a")
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    world.run(0.01)
+    mesh = dem.Mesh(vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], triangles=[(0, 1, 2)])
+    grains = world.grains_parse("g.csv", "x y z r\n1 2 3 0.1\n4 5 6 0.2\n")
+    for struct in (dem.Vec3(1, 2, 3), world.totals, world.ledger, ball.state, world.counters, world.desc, glass.desc, mesh, grains, ball, glass,
+                   dem.Region(box=(0, 0, 0, 1, 1, 1), cylinder="z"), dem.Selection(bodies=[ball], region=dem.Region(box=(0, 0, 0, 1, 1, 1))),
+                   dem.Sizes(kind="sieve_curve", radius=[1, 2], passing=[0, 1]), world.body_counts, dem.Motion(kind="rotating"),
+                   dem.Motion(kind="table", table=[dem.MotionRow(0, (0, 0, 0)), dem.MotionRow(1, (0, 0, 1))]), dem.WorldDesc(groups="a b")):
+        for made in (pickle.loads(pickle.dumps(struct)), copy.copy(struct), copy.deepcopy(struct)):
+            same(type(made), type(struct))
+            same(made.to_dict() if not isinstance(made, dem.Id) else made, struct.to_dict() if not isinstance(struct, dem.Id) else struct,
+                 type(struct).__name__)
+    same(pickle.loads(pickle.dumps(mesh)).vertices.tolist(), [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    same((world.totals == world.totals, world.totals == dem.Totals(), dem.Vec3(1, 2, 3) == (1, 2, 3), dem.Vec3(1, 2, 3) != [1, 2, 4],
+          dem.Motion(kind="rotating") == dem.Motion(kind="rotating"), dem.Vec3() == "abc"), (True, False, True, True, True, False))
+    for thing in (world, world.slabs(axis=0, count=1), world.replay(os.path.join(WORK.name, "p.html"))):
+        for function in (pickle.dumps, copy.copy, copy.deepcopy):
+            raises(TypeError, lambda: function(thing), type(thing).__name__, "copied or pickled", "checkpoint")
+    code = ("import sys, multiprocessing, concurrent.futures; sys.path.insert(0, %r); import dem\n"
+            "def job(height):\n"
+            "    with dem.World(gravity=(0, 0, -9.81), threads=1) as world:\n"
+            "        ball = world.sphere(world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5), 0.01, (0, 0, height))\n"
+            "        world.run(0.01)\n"
+            "        return ball.state, world.totals\n"
+            "if __name__ == '__main__':\n"
+            "    with concurrent.futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context('spawn')) as pool:\n"
+            "        (one, total), (two, _) = pool.map(job, (1, 2))\n"
+            "    print(round((two.position - one.position).z, 9), total.mass == one.mass)\n" % PYTHON)
+    path = os.path.join(WORK.name, "pool.py")
+    with open(path, "w") as file:
+        file.write(code)
+    done = subprocess.run([sys.executable, "-B", path], capture_output=True, text=True)
+    same(done.stdout.split(), ["1.0", "True"], done.stderr[-500:])
+
+
+@test("Vec3 and Quat are numbers: sums, products, lengths, comparison with tuples")
+def _():
+    v, w = dem.Vec3(3, 4, 0), dem.Vec3(1, 2, 3)
+    same((v + w, v - w, 2*v, v*w, v/2, -v, abs(v), v.dot(w), v.cross(w)),
+         ((4, 6, 3), (2, 2, -3), (6, 8, 0), (3, 8, 0), (1.5, 2, 0), (-3, -4, 0), 5.0, 11.0, (12, -9, 2)))
+    same((v + (1, 1, 1), (1, 1, 1) - v, sum([v, w], dem.Vec3()), list(v), v[0], v[-1], v["y"], tuple(v[:2])),
+         ((4, 5, 1), (-2, -3, 1), (4, 6, 3), [3, 4, 0], 3.0, 0.0, 4.0, (3.0, 4.0)))
+    v += w
+    same((v, type(v), dem.Quat(1, 0, 0, 0)*2), ((4, 6, 3), dem.Vec3, (2, 0, 0, 0)))
+    raises(TypeError, lambda: v + (1, 2))
+    raises(TypeError, lambda: v + "abc")
+
+
+@test("worlds, ids and arrays show what they are")
+def _():
+    world, glass = heap()
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    world.step(2)
+    same((repr(world), repr(glass), repr(ball)), ("<World at %.6g s: 1 bodies, step 2>" % world.time, "Material(id=1)", "Body(slot=1, generation=1)"))
+    same("1 bodies" in repr(world.bodies) and repr(world.contacts) == "<0 ContactInfo>", True)
+    columns = world.contacts.to_dict()
+    same((columns["overlap"], "point_x" in columns), ([], True))
+    same(set(world.totals.to_dict()), set(dem.Totals.kinds))
+    world.close()
+    same((repr(world), bool(world)), ("<World, closed>", True))
 
 
 # ---- the notebook ----
