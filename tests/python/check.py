@@ -1360,12 +1360,12 @@ def main():
                 called.add(name)
                 return function(*arguments)
             return call
-        functions = {name: getattr(dem._lib, name) for name, _, _ in dem._FUNCTIONS}
+        functions = {name: getattr(dem._lib, name) for name, *_ in dem._FUNCTIONS}
         for name, function in functions.items():
             setattr(dem._lib, name, recorded(name, function))
         run(TESTS[3:])
         if not words:
-            lost = sorted(set(functions) - called)
+            lost = sorted(set(functions) - called - {"dem_body_id_get"})       # dempy_ids calls it in C
             report("every function of the library is called by a test", lost and "not called: " + ", ".join(lost), 0)
         for name, future in futures.items():
             error, seconds = future.result()
