@@ -229,8 +229,9 @@ options: dem.h ### write docs/options.md and docs/options_run.md, every field of
 	@awk -f tests/options.awk - dem.h < build/options.txt > build/options.md && cp build/options.md docs/options.md
 	@awk -v part=run -f tests/options.awk - dem.h < build/options.txt > build/options.md && cp build/options.md docs/options_run.md
 
-python: dem.h ## write examples/python/dem.py from dem.h and examples/python/base.py
+python: dem.h ## write examples/python/dem.py and dem.pyi from dem.h and examples/python/base.py
 	@mkdir -p build && $(PYTHON) examples/python/make.py > build/dem.py && cp build/dem.py examples/python/dem.py
+	@$(PYTHON) examples/python/make.py --stubs > build/dem.pyi && cp build/dem.pyi examples/python/dem.pyi
 
 python-check: $(if $(HAVE_PYTHON),$(LESSONS)) ### test examples/python: dem.py is that of dem.h, layouts of structs, errors, functions, lessons; LONG=1: whole lessons
 	@if [ -z "$(HAVE_PYTHON)" ]; then echo "SKIP: $(PYTHON) not found (Debian package python3): examples/python is not tested"; \

@@ -74,6 +74,7 @@ REPLAY_VALUES = 16
 OUTPUT_COLUMNS = 32
 EFFECTS = 19
 VERSION = VERSION_MAJOR*10000 + VERSION_MINOR*100 + VERSION_PATCH
+__version__ = "%d.%d.%d" % (VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH)
 # inline functions of dem.h, which the library exports under other names
 _INLINE = r"""
 dem_quat dempy_quat_multiply(dem_quat a, dem_quat b) { return dem_quat_multiply(a, b); }
@@ -2612,6 +2613,7 @@ class Wall(Id):
             table_repeats=0):
         """Sets the motion of a wall, which begins at its present pose.
 
+        kind: one of "fixed", "translating", "rotating", "oscillating", "user", "table", "servo"
         velocity: m/s, of translating walls; of oscillating ones the direction only; of servo walls the direction in
             which they press, and their largest speed
         point: m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques; axis 0
@@ -5004,10 +5006,17 @@ class World(WorldBase):
         gravity: m/s2
         domain: m. Required on axes whose boundary is periodic or outflow, not needed on open axes. A periodic axis
             must be at least as long as four of the largest radii, two skins and two ranges of the law.
-        boundary: of the faces on the axes x, y and z
+        boundary: of the faces on the axes x, y and z; one of "open", "periodic", "outflow"
         planar: 1 makes the world two-dimensional: bodies are discs and polygons that move in the plane z = 0 and
             rotate about z only. The z component of gravity is ignored.
         thickness: m, of discs and polygons along z; 0 means 1 m
+        normal_law: one of "hertz", "linear", "hysteretic"
+        tangent_law: one of "auto", "none", "viscous", "step", "spring", "mindlin", "mindlin_rescaled"
+        rolling_law: one of "auto", "none", "step", "constant", "epsd"
+        tension: one of "allowed", "clipped", "compensated"
+        friction_load: one of "repulsive", "elastic", "magnitude"
+        slider: one of "parallel", "spring", "remainder"
+        convention: one of "standard", "mill"
         law: replaces the normal, tangential and rolling law; null means the laws above
         law_rows: The same law for rows of contacts of spheres, which is faster: DEM_LAW_ROWS defines it. It must
             return what law returns; dem.h uses whichever suits. It needs law. Null means that law is called for each
@@ -5045,6 +5054,7 @@ class World(WorldBase):
         force: force on a body; null means none
         body_force: force and torque on a body; null means none
         force_user: passed to both
+        integrator: one of "velocity_verlet", "forward_euler", "symplectic_euler", "position_verlet", "leapfrog"
         dt: s, the time step; 0 means chosen from the scene, see dem_step_advice_get
         allow_large_dt: 1 allows dt above the stable limit, to show what happens then. It switches off all checks of
             the step: of contacts, speeds, walls and law_rate; a chosen dt is not shortened either.
@@ -5056,7 +5066,9 @@ class World(WorldBase):
             then the gap below which contacts are solved. If it is 0, dem.h takes three times the distance that the
             fastest body moves in a step, at most the largest radius R and at least 0.1 R. On a periodic axis of
             length P it is at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R.
-            The fields that follow apply to impulses only.
+            The fields that follow apply to impulses only.; one of "springs", "impulses"
+        cone: one of "coulomb", "convex"
+        solver: one of "gauss_seidel", "jacobi", "apgd", "spectral"
         sweeps: most sweeps over all contacts in a step; 0 means 200
         tolerance: m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when the
             root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the largest change is below
@@ -5064,8 +5076,12 @@ class World(WorldBase):
         cold_start: 1 begins with zero impulses, not those of the last step
         unsolved_stops: 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.
             With 0 it continues; dem_counters_get, the report and dem_progress_print count such steps.
+        search: one of "auto", "all_pairs", "grid", "linked_list", "hierarchical", "bins"
         skin: m, margin of the neighbour list; 0 means chosen for speed; < 0 means none: the list is rebuilt in every
             step.
+        rotation: one of "spiral", "fincham", "no_squish"
+        ellipsoid_overlap: one of "conservative", "chord", "normal"
+        cluster_contacts: one of "merged", "separate"
         orientations: 1 follows the orientations of spheres too
         overlap_stop: 0 to 1, in radii (see dem_counters.overlap_max): a step after which an overlap is larger ends
             the run with DEM_ERROR_STOPPED, because grains are jammed or too soft. 0 means off. The report and
@@ -5400,6 +5416,7 @@ class World(WorldBase):
         positions: m, required: count x 3
         radii: m, > 0: one each; null means that all have `radius`
         radius: m, of all spheres if radii is null
+        mass: one of "union", "sum", "given"
         rays: DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; 0 means 512. It is an error if rays are
             more than a quarter of the smallest radius apart.
         volume: The rest is for DEM_CLUSTER_GIVEN.
@@ -5547,7 +5564,7 @@ class World(WorldBase):
             length=0, thickness=0, lift=0, staggered=0, radius=0, model=0, clearance=0):
         """Adds a sieve.
 
-        kind: required
+        kind: required; one of "none", "wires", "bars", "square", "round", "slots", "reduced"
         point: m, centre of a hole, at half the thickness
         normal: across the sieve; 0 means along z
         along: Direction of the rows of holes; 0 means along x, or y if x is near the normal. The same holds for a
@@ -5585,7 +5602,8 @@ class World(WorldBase):
         leaves; its id is then invalid and is never used again. While both bodies are fixed, force, torque and power
         are 0; the joint acts again when one is released. Checkpoints contain joints.
 
-        kind: required: how the two are joined
+        kind: required: how the two are joined; one of "none", "point", "revolute"
+        motor: one of "none", "speed", "torque"
         a: a is required; b null means `wall`, or space
         wall: if b is null: moves with it; null means space, at rest
         collide: 1: the two bodies may touch each other
@@ -6314,6 +6332,8 @@ class World(WorldBase):
         (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that it writes counts the
         present call as done.
 
+        kind: one of "call", "vtp", "xyz", "contacts", "checkpoint", "csv", "surfaces", "walls", "bodies_csv",
+            "contacts_csv", "field_csv"
         path: Name of the file, copied. In "grains_####.vtp" the number of the output replaces ####; it is 0 at
             `start`. Without # the file is replaced each time. The path of a CSV file has no #. DEM_OUTPUT_CALL: or
             null.

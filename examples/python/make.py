@@ -210,6 +210,7 @@ class Writer:
         self.h, self.out = header, []
         self.ids = [n for n, (fields, _) in header.structs.items()
                     if [f.name for f in fields] in (["id"], ["slot", "generation"])]
+        self.typed = {}         # annotated signatures, by owner
         self.nulls = {}         # arguments that may be None, by function
         self.free = {f.name[:-5]: f.name for f in header.functions if f.name.endswith("_free")}
 
@@ -636,8 +637,9 @@ class Writer:
             for m in members:
                 if m.name in taken:
                     continue
-                if m.doc and m.doc != note:
-                    docs.append("%s: %s" % (m.name, m.doc))
+                words = self.words(m)
+                if (m.doc or words) and (m.doc != note or words):
+                    docs.append("%s: %s" % (m.name, "; ".join(filter(None, (m.doc, words)))))
                 note = m.doc
             if base:
                 docs.insert(0, "Fields that are not given stay as they are.")
@@ -648,6 +650,15 @@ class Writer:
         text = ", ".join((["self"] if owner else []) + [p if d is None else "%s=%s" % (p, d) for p, d in params]
                          + (["*"] if star else []) + ["%s=%s" % s for s in star])
         prop = owner and f.name.endswith("_get") and not params and not star
+        variables = {a.name: a for a in f.arguments}
+        if fields:
+            variables.update((m.name, m) for m in self.h.structs[fields[1]][0])
+        hints = ["self"]*bool(owner)
+        for p, d in params + [("*", "")]*bool(star) + star:
+            hints.append(p if p == "*" else "%s: %s%s" % (
+                p, "TextIO | None" if p == "out" else self.hint(variables[p], d == "None" or (p, d) in star), " = ..." if d is not None else ""))
+        self.typed.setdefault(owner, []).append("%s    def %s(%s) -> %s: ..." % (
+            "    @property\n" if prop else "", name, ", ".join(hints), self.returned(f, owner, outs)))
         pad = "    " if owner else ""
         self.write("")
         if not owner:
@@ -665,12 +676,132 @@ class Writer:
         if owner:
             self.names.setdefault(owner, []).append(name)
 
+    def words(self, m):
+        """The words that a field of an enum takes."""
+        if m.type not in self.h.enums:
+            return ""
+        names = [v[0] for v in self.h.enums[m.type][0]]
+        prefix = os.path.commonprefix(names)
+        prefix = prefix[:prefix.rindex("_") + 1]
+        return "one of " + ", ".join('"%s"' % name[len(prefix):].lower() for name in names)
+
     def setter(self, f, owner):
         """What changes the values that a function returns, as an argument of _with."""
         other = next((g for g in self.h.functions if g.name == f.name[:-4] + "_set" and self.owner(g) == owner), None)
         if not other:
             return ""
         return ", 'call %s.%s(...), which changes the fields that it is given'" % (camel(owner), self.short(other, owner))
+
+    # -- types for editors: dem.pyi --
+    def hint(self, var, null=False):
+        """The annotation of an argument or a field."""
+        t, more = var.type, " | None" if null else ""
+        if var.call or t in self.h.calls:
+            return "Callable[..., Any] | None"
+        if var.pointer and t == "FILE":
+            return "TextIO | None"
+        if t == "char":
+            return ("str | os.PathLike[str]" if var.name == "path" else "str | Sequence[str]" if var.name in (
+                "groups", "body_reals", "law_memory_names", "columns") else "str") + (" | None" if null and var.pointer else "")
+        if t == "void":
+            return "str | bytes" if var.name == "data" else "Any"
+        if t in HANDLES:
+            return HANDLES[t]
+        if t in ("dem_vec3", "dem_quat", "dem_box") and not var.dim and not (var.pointer and var.const):
+            return "%s | _Numbers%s" % (camel(t), more)
+        if t in self.h.enums:
+            return "Sequence[%s | str | int]" % camel(t) if var.dim else "%s | str | int" % camel(t)
+        if t in self.h.structs:
+            one = camel(t) if t in self.ids else "%s | Mapping[str, Any]" % camel(t)
+            many = var.dim or var.pointer and (var.name.endswith("s") and t not in ("dem_trials", "dem_grains", "dem_sizes", "dem_bodies")
+                                               or var.name == "table")
+            return ("Sequence[%s]" % one if many else one + (" | _Numbers" if t == "dem_region" else "")) + (more or " | None"*bool(many))
+        if var.pointer or var.dim:
+            return "_Array" + more
+        return "float" if t in ("double", "dem_real") else "int"
+
+    def returned(self, f, owner, outs):
+        """The annotation of what a function returns."""
+        h = self.h
+        kinds = {a.name: a for a in f.arguments}
+
+        def out(name, size):
+            a = kinds[name]
+            item = camel(a.type) if a.type in h.structs else "float" if NUMBERS[a.type] in ("ctypes.c_double", "Real") else "int"
+            if f.type == "int" and f.name.endswith("classes_get"):
+                return "list[float]"
+            if f.type == "int" and size == "capacity" and a.type in h.structs and a.type not in self.ids and "finding" not in a.type:
+                return "Structs"
+            return "list[%s]" % item if f.type == "int" or a.type in self.ids and size else item if size is None else "ctypes.Array[Any]"
+        if any(a.type == "FILE" for a in f.arguments):
+            return "int | None" if f.type != "void" else "None"
+        if f.type == "char":
+            return "str"
+        if f.name == "dem_bodies_get":
+            return "Bodies"
+        if f.type == "dem_result" or f.type == "int" and outs:
+            shown = [out(name, size) for name, size in outs]
+            if f.name.endswith("classes_get"):
+                return "tuple[list[float], list[float]]"
+            return "None" if not shown else shown[0] if len(shown) == 1 or f.type == "int" else "tuple[%s]" % ", ".join(shown)
+        if f.type in HANDLES:
+            return HANDLES[f.type]
+        if f.type in h.structs:
+            return camel(f.type)
+        return {"void": "None", "double": "float", "dem_real": "float"}.get(f.type, "int")
+
+    def stubs(self):
+        """The text of dem.pyi."""
+        h, out = self.h, [STUBS]
+        for name, value, _ in h.constants:
+            out.append("%s: int" % name[4:])
+        out.append("VERSION: int\n__version__: str\n")
+        for name, (values, _) in h.enums.items():
+            names = [v[0] for v in values]
+            prefix = os.path.commonprefix(names)
+            prefix = "DEM_" if name == "dem_result" else prefix[:prefix.rindex("_") + 1]
+            out.append("class %s(enum.IntEnum):" % camel(name))
+            for value, number, _ in values:
+                short = value[len(prefix):]
+                out.append("    %s = %d" % ("_" + short if short[0].isdigit() else short, number))
+            out.append("")
+        out.append("class Error(Exception):\n    result: Result | None\n")
+        for value, number, _ in h.enums["dem_result"][0]:
+            if number:
+                word = value[len("DEM_ERROR_"):]
+                out.append("class %sError(Error%s): ..." % (camel(word.lower()), ", builtins." + BUILTIN[word] if word in BUILTIN else ""))
+        for name, base in (("ArgumentTypeError", "TypeError"), ("ArgumentRangeError", "OverflowError"), ("FieldError", "AttributeError"),
+                           ("LoadError", "ImportError")):
+            out.append("class %s(Error, builtins.%s): ..." % (name, base))
+        out.append("class NoSuchError(ArgumentError, builtins.IndexError): ...\n")
+        for name, (fields, _) in h.structs.items():
+            base = BASES.get(name) or ("Id" if name in self.ids else "Struct")
+            out.append("class %s(%s):" % (camel(name), base))
+            for f in fields:
+                kind = self.hint(f, True)
+                if f.pointer and f.type in NUMBERS or f.dim and f.type in NUMBERS:
+                    kind = "Any"
+                elif f.type in h.structs and not f.pointer and not f.dim:
+                    kind = camel(f.type)
+                elif f.dim and f.type == "char":
+                    kind = "str"
+                elif f.type in h.enums and not f.dim:
+                    kind = camel(f.type)
+                out.append("    %s: %s" % (f.name, kind))
+            given = ", ".join("%s: %s = ..." % (f.name, self.hint(f, True)) for f in fields)
+            star = "" if base in ("Vector", "Numbers", "Id") or len(fields) < 3 else "*values: Any, "
+            out.append("    def __init__(self, %s%s) -> None: ..." % (star, given))
+            out += self.typed.get(name, [])
+            out.append("")
+        for name in ("dem_world", "dem_replay", "dem_slabs"):
+            out.append("class %s(%sBase):" % (HANDLES[name], HANDLES[name]))
+            if name == "dem_world":
+                out.append("    def __init__(self, *, %s) -> None: ..." % ", ".join(
+                    "%s: %s = ..." % (m.name, self.hint(m, True)) for m in h.structs["dem_world_desc"][0]))
+            out += self.typed.get(name, [])
+            out.append("")
+        out += [line.strip().replace("(self, ", "(") for line in self.typed.get(None, [])]
+        return "\n".join(out) + "\n"
 
     def default(self, m):
         if m.call or m.pointer or m.type in self.h.calls or m.type in self.ids or m.type in self.h.structs:
@@ -782,6 +913,7 @@ class Writer:
         for name, value, note in h.constants:
             self.write("%s = %s%s" % (name[4:], value, "    # " + note if note else ""))
         self.write("VERSION = VERSION_MAJOR*10000 + VERSION_MINOR*100 + VERSION_PATCH")
+        self.write('__version__ = "%d.%d.%d" % (VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH)')
         inline = [f for f in h.functions if f.inline and not f.name.endswith("_make")]
         self.write("# inline functions of dem.h, which the library exports under other names\n_INLINE = r\"\"\"")
         for f in inline:
@@ -838,8 +970,9 @@ class Writer:
         lines = textwrap.wrap("def __init__(%s):" % text, 106)
         docs, note = [], None
         for m in members:
-            if m.doc and m.doc != note:
-                docs.append("%s: %s" % (m.name, m.doc))
+            words = self.words(m)
+            if (m.doc or words) and (m.doc != note or words):
+                docs.append("%s: %s" % (m.name, "; ".join(filter(None, (m.doc, words)))))
             note = m.doc
         init = WORLD % ("\n".join(["    " + lines[0]] + ["            " + line for line in lines[1:]]),
                         doc_lines(8, "Creates an empty world. ArgumentError says which value is out of range.", docs),
@@ -967,6 +1100,103 @@ except ImportError:
 _refs = sys.getrefcount
 '''
 
+STUBS = '''# Types of dem.py for editors and type checkers. make.py made this file from dem.h: `make python`.
+import builtins
+import ctypes
+import enum
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, TextIO
+
+_Numbers = Sequence[Any]        # as many as fields, such as (0, 0, 1)
+_Array = Any                    # lists, nested or flat, buffers, arrays of numpy, tables of pandas
+Real: type
+
+def build(header: str | None = ..., folder: str | None = ...) -> str: ...
+def load(path: str | None = ...) -> None: ...
+def compile(source: str | os.PathLike[str], flags: str | Sequence[str] = ...) -> ctypes.CDLL: ...
+def tail(memory: Any, first: int) -> Any: ...
+def progress_print(world: World, done: float, seconds_left: float) -> None: ...
+
+class Struct(ctypes.Structure):
+    def __iter__(self) -> Iterator[Any]: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: Any) -> Any: ...
+    def keys(self) -> list[str]: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    @classmethod
+    def make(cls, value: Any) -> Any: ...
+
+class Numbers(Struct):
+    def __array__(self, dtype: Any = ..., copy: Any = ...) -> Any: ...
+    def __add__(self, other: Any) -> Any: ...
+    def __radd__(self, other: Any) -> Any: ...
+    def __sub__(self, other: Any) -> Any: ...
+    def __rsub__(self, other: Any) -> Any: ...
+    def __mul__(self, other: Any) -> Any: ...
+    def __rmul__(self, other: Any) -> Any: ...
+    def __truediv__(self, other: Any) -> Any: ...
+    def __neg__(self) -> Any: ...
+    def __abs__(self) -> float: ...
+    def dot(self, other: Any) -> float: ...
+
+class Vector(Numbers):
+    def cross(self, other: Any) -> Any: ...
+
+class Id(Struct):
+    def of(self, world: World) -> Any: ...
+    @property
+    def world(self) -> World: ...
+
+class Handle:
+    def close(self) -> None: ...
+    def __enter__(self) -> Any: ...
+    def __exit__(self, *_: Any) -> None: ...
+
+class WorldBase(Handle):
+    gravity: Any
+    dt: float
+    @property
+    def bodies(self) -> Rows: ...
+    def __len__(self) -> int: ...
+
+class ReplayBase(Handle):
+    @property
+    def path(self) -> str: ...
+
+class SlabsBase(Handle): ...
+
+class Structs:
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: Any) -> Any: ...
+    def __array__(self, dtype: Any = ..., copy: Any = ...) -> Any: ...
+    def to_dict(self) -> dict[str, list[Any]]: ...
+
+class Page:
+    def __init__(self, path: str | os.PathLike[str], height: int = ...) -> None: ...
+
+class Rows:
+    count: int
+    real_count: int
+    positions: Any
+    velocities: Any
+    spins: Any
+    forces: Any
+    torques: Any
+    masses: Any
+    slots: Any
+    materials: Any
+    orientations: Any
+    shapes: Any
+    reals: Any
+    rates: Any
+    groups: Any
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: Any) -> Any: ...
+    def __iter__(self) -> Iterator[Body]: ...
+    def to_dict(self) -> dict[str, list[Any]]: ...
+'''
+
 WORLD = '''
 
 class World(WorldBase):
@@ -989,6 +1219,11 @@ class Slabs(SlabsBase):
 '''
 
 if __name__ == "__main__":
-    path = sys.argv[1] if len(sys.argv) > 1 else os.path.join(HERE, "..", "..", "dem.h")
+    paths = [argument for argument in sys.argv[1:] if argument != "--stubs"]
+    path = paths[0] if paths else os.path.join(HERE, "..", "..", "dem.h")
     with open(path) as file:
-        sys.stdout.write(Writer(Header(file.read())).file())
+        writer = Writer(Header(file.read()))
+    text = writer.file()
+    if "--stubs" in sys.argv:
+        text = writer.stubs()
+    sys.stdout.write(text)

@@ -169,7 +169,8 @@ def write(page, lines):
     table = "| what | in C, us | in Python, us |\n|---|---|---|\n" + "".join(
         "| %s | %s | %s |\n" % (about, value[key + ".c"], value[key + ".python"]) for about, key in rows)
     table += "\n| call from Python | us |\n|---|---|\n" + "".join("| `%s` | %s |\n" % (about, value[key]) for about, key in (
-        ("world.time", "call.time"), ("body.state", "call.state"), ("world.bodies.positions", "call.positions"), ("world.run(0)", "call.run")))
+        ("world.time", "call.time"), ("body.state", "call.state"), ("world.bodies.positions", "call.positions"),
+        ("world.bodies_memory.positions", "call.memory"), ("world.run(0)", "call.run")))
     block = "<!-- overhead begins: python3 examples/python/overhead.py docs/python.md; %s; Python %s; commit %s -->\n%s<!-- overhead ends -->" % (
         processor, platform.python_version(), commit, table.replace(" us ", " µs "))
     found = re.search(r"<!-- overhead begins.*?<!-- overhead ends -->", text, re.S)

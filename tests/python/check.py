@@ -114,6 +114,42 @@ def _():
         same(made == file.read(), True, "the file (make python makes it again)")
 
 
+@test("dem.pyi is what make.py makes, and has every public name, method and argument of dem.py")
+def _():
+    import ast
+    made = subprocess.run([sys.executable, os.path.join(PYTHON, "make.py"), "--stubs"], capture_output=True, text=True, check=True).stdout
+    with open(os.path.join(PYTHON, "dem.pyi")) as file:
+        same(made == file.read(), True, "the file (make python makes it again)")
+    tree, names = ast.parse(made), set()
+
+    def arguments(node):
+        return [a.arg for a in node.args.args + node.args.kwonlyargs]
+    for node in tree.body:
+        if isinstance(node, ast.AnnAssign):
+            names.add(node.target.id)
+        elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.add(node.name)
+        if isinstance(node, ast.FunctionDef):
+            same(arguments(node), list(inspect.signature(getattr(dem, node.name)).parameters), node.name)
+        elif isinstance(node, ast.ClassDef):
+            kind = getattr(dem, node.name)
+            members = {part.name: part for part in node.body if isinstance(part, ast.FunctionDef)}
+            for name, part in members.items():
+                static = inspect.getattr_static(kind, name)
+                same(any(isinstance(d, ast.Name) and d.id == "property" for d in part.decorator_list), isinstance(static, property), name)
+                if not isinstance(static, (property, classmethod)) and name[0] != "_":
+                    same(arguments(part), list(inspect.signature(static).parameters), "%s.%s" % (node.name, name))
+            if issubclass(kind, (dem.Handle, dem.Id)) and kind.__name__ not in ("Handle", "Id"):
+                fields = {part.target.id for part in node.body if isinstance(part, ast.AnnAssign)}
+                same(sorted(name for name in vars(kind) if name[0] != "_" and name not in members and name not in fields
+                            and name not in ("rows", "c_name", "counts", "kinds", "counted", "lengths", "numbers", "whole")), [], kind.__name__)
+    public = {name for name, value in vars(dem).items() if name[0] != "_" and getattr(value, "__module__", "") == "dem"
+              and not isinstance(value, dem.Function) and not isinstance(value, (dem.View, dem._Library))}
+    same(sorted(public - names - {"View", "Text", "Choices", "Function", "Handle"}), [], "names without types")
+    same(dem.__version__, "%d.%d.%d" % (dem.VERSION_MAJOR, dem.VERSION_MINOR, dem.VERSION_PATCH))
+    same('one of "hertz"' in dem.World.__init__.__doc__ and '"rotating"' in dem.Wall.motion_set.__doc__, True, "words of enums in docstrings")
+
+
 @test("every public struct has the size and the offsets of C, in double and in single precision")
 def _():
     with open(os.path.join(ROOT, "dem.h")) as file:
