@@ -2611,7 +2611,7 @@ class Wall(Id):
     def motion_set(self, *, kind=0, velocity=None, point=None, axis=None, speed=0, amplitude=0, frequency=0,
             phase=0, start=0, function=None, user=None, ramp=0, load=0, area=0, travel=0, table=None, table_count=0,
             table_repeats=0):
-        """Sets the motion of a wall, which begins at its present pose.
+        """Sets the motion of a wall, from its present pose on. Bodies on its rails follow at once.
 
         kind: one of "fixed", "translating", "rotating", "oscillating", "user", "table", "servo"
         velocity: m/s, of translating walls; of oscillating ones the direction only; of servo walls the direction in

@@ -175,7 +175,7 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *world, dem_material material,
    contacts (see dem_contacts_get). */
 DEM_API int dem_sieve_blinded_get(const dem_world *world, dem_wall sieve, dem_real speed);
 
-/* Sets the motion of a wall, which begins at its present pose. */
+/* Sets the motion of a wall, from its present pose on. Bodies on its rails follow at once. */
 DEM_API dem_result dem_wall_motion_set(dem_world *world, dem_wall wall, const dem_motion *motion);
 /* Sets the velocity of the surface of a wall (m/s), for a belt: the wall does not move with it. The
    velocity is in world axes and rotates with the wall from now on. At a contact the surface moves
