@@ -932,6 +932,8 @@ def _():
     same(grains.velocities, None)
     world.grains(glass, grains)
     same(world.body_counts.present, 3)
+    world.grains(None, world.grains_parse("g.csv", "x y z r material\n7 8 9 0.1 1\n"))     # of the materials in the file
+    same(world.bodies.materials.tolist(), [glass.id]*4)
     mesh = dem.Mesh(vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], triangles=[(0, 1, 2)])
     world.mesh_place(mesh, 2, None, (0, 0, -1))
     same(mesh.vertices.tolist(), [[0, 0, -1], [2, 0, -1], [0, 2, -1]])
@@ -1130,6 +1132,7 @@ def _():
     impacts = counted.impacts(glass, glass)
     same((impacts.ended, counted.events_open_each()), (sum(kind == dem.EventKind.END for kind, _, _ in seen), len(seen) % 2))
     near(impacts.lost_normal, counted.ledger.normal, 1e-9)
+    same((counted.impacts() == impacts, counted.impacts(glass, None) == impacts), (True, True), "impacts of any materials")
     same((floor.wear(1e-4, 1e9).slide, list(floor.wear_facets)), (counted.ledger.slide, [counted.ledger.slide]))
     counted.impacts_csv_write(at("impacts.csv"))
     counted.events_stop()
