@@ -5980,7 +5980,7 @@ class World(WorldBase):
         fn = self._callback(EventFn, fn)
         return self._number(_lib.dem_events_open_each(self._c, fn, None))
 
-    def impacts(self, a, b):
+    def impacts(self, a=None, b=None):
         """Computes the statistics of contacts between two materials, walls included; material id 0 means any. An error
         if contacts are not recorded.
         """
@@ -6863,7 +6863,7 @@ _FUNCTIONS = [
     ('dem_events_open_each', ctypes.c_int, [ctypes.c_void_p, EventFn.c, ctypes.c_void_p], 'World.events_open_each',
      ['self', 'fn', 'user=']),
     ('dem_impacts_get', ctypes.c_int, [ctypes.c_void_p, Material, Material, ctypes.POINTER(Impacts)], 'World.impacts',
-     ['self', 'a', 'b', 'impacts']),
+     ['self', 'a=', 'b=', 'impacts']),
     ('dem_impacts_csv_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.impacts_csv_write', ['self',
      'path']),
     ('dem_wall_wear_get', ctypes.c_int, [ctypes.c_void_p, Wall, ctypes.c_double, ctypes.c_double,
@@ -6914,7 +6914,7 @@ _FUNCTIONS = [
      ctypes.POINTER(Grains)], 'World.grains_parse', ['self', 'name', 'data', 'size', 'grains']),
     ('dem_grains_free', None, [ctypes.c_void_p, ctypes.POINTER(Grains)], 'World.grains_free', ['self', 'grains']),
     ('dem_grains_add', ctypes.c_int, [ctypes.c_void_p, Material, ctypes.POINTER(Grains)], 'World.grains', ['self',
-     'material', 'grains']),
+     'material=', 'grains']),
     ('dem_vtp_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.vtp_write', ['self', 'path']),
     ('dem_vtk_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.vtk_write', ['self', 'path']),
     ('dem_xyz_write', ctypes.c_int, [ctypes.c_void_p, ctypes.c_char_p], 'World.xyz_write', ['self', 'path']),

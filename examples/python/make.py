@@ -604,7 +604,11 @@ class Writer:
                 pass_on.append("%s._bound(_struct_of(Region, %s, %s))" % (world, a.name, at(a)))
             else:
                 last = all(x.pointer or x.type in h.calls or x.name == "user" for x in args[i + 1:])
-                default = "None" if kind == "dem_box" and last else "(1, 0, 0, 0)" if a is args[-1] and a.name == "orientation" else "0" if optional or (f.name, a.name) in ZEROS else None
+                any_id = kind in self.ids and re.search(r"\bid (?:0 means|is 0)", f.doc)     # None: an id of 0
+                if any_id:
+                    self.nulls.setdefault(f.name, set()).add(a.name)
+                last = last or any_id and all(x.pointer or x.type == kind for x in args[i + 1:]) and not any(x.const for x in args[i + 1:])
+                default = "None" if (kind == "dem_box" or any_id) and last else "(1, 0, 0, 0)" if a is args[-1] and a.name == "orientation" else "0" if optional or (f.name, a.name) in ZEROS else None
                 params.append((a.name, default))
                 if default == "None":
                     self.nulls.setdefault(f.name, set()).add(a.name)
@@ -653,10 +657,10 @@ class Writer:
         variables = {a.name: a for a in f.arguments}
         if fields:
             variables.update((m.name, m) for m in self.h.structs[fields[1]][0])
-        hints = ["self"]*bool(owner)
+        hints, nulls = ["self"]*bool(owner), self.nulls.get(f.name, ())
         for p, d in params + [("*", "")]*bool(star) + star:
             hints.append(p if p == "*" else "%s: %s%s" % (
-                p, "TextIO | None" if p == "out" else self.hint(variables[p], d == "None" or (p, d) in star), " = ..." if d is not None else ""))
+                p, "TextIO | None" if p == "out" else self.hint(variables[p], d == "None" or (p, d) in star or p in nulls), " = ..." if d is not None else ""))
         self.typed.setdefault(owner, []).append("%s    def %s(%s) -> %s: ..." % (
             "    @property\n" if prop else "", name, ", ".join(hints), self.returned(f, owner, outs)))
         pad = "    " if owner else ""

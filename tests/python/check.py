@@ -14,6 +14,7 @@ import json
 import math
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -932,6 +933,8 @@ def _():
     same(grains.velocities, None)
     world.grains(glass, grains)
     same(world.body_counts.present, 3)
+    world.grains(None, world.grains_parse("g.csv", "x y z r material\n7 8 9 0.1 1\n"))     # of the materials in the file
+    same(world.bodies.materials.tolist(), [glass.id]*4)
     mesh = dem.Mesh(vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], triangles=[(0, 1, 2)])
     world.mesh_place(mesh, 2, None, (0, 0, -1))
     same(mesh.vertices.tolist(), [[0, 0, -1], [2, 0, -1], [0, 2, -1]])
@@ -1130,6 +1133,7 @@ def _():
     impacts = counted.impacts(glass, glass)
     same((impacts.ended, counted.events_open_each()), (sum(kind == dem.EventKind.END for kind, _, _ in seen), len(seen) % 2))
     near(impacts.lost_normal, counted.ledger.normal, 1e-9)
+    same((counted.impacts() == impacts, counted.impacts(glass, None) == impacts), (True, True), "impacts of any materials")
     same((floor.wear(1e-4, 1e9).slide, list(floor.wear_facets)), (counted.ledger.slide, [counted.ledger.slide]))
     counted.impacts_csv_write(at("impacts.csv"))
     counted.events_stop()
@@ -1261,33 +1265,7 @@ def _():
     same((repr(world), bool(world)), ("<World, closed>", True))
 
 
-# ---- the notebook ----
-
-@test("drum.ipynb is a notebook of format 4 whose cells run as a program")
-def _():
-    path = os.path.join(PYTHON, "drum.ipynb")
-    with open(path) as file:
-        book = json.load(file)
-    same((book["nbformat"], book["nbformat_minor"] >= 5), (4, True))
-    same(book["metadata"]["kernelspec"]["language"], "python")
-    ids = [cell["id"] for cell in book["cells"]]
-    same(len(set(ids)), len(ids), "ids")
-    code = []
-    for cell in book["cells"]:
-        same(set(cell) - {"id", "cell_type", "metadata", "source"}, {"outputs", "execution_count"} if cell["cell_type"] == "code" else set(), "keys")
-        same(bool(re.match(r"^[a-zA-Z0-9_-]{1,64}$", cell["id"])), True, cell["id"])
-        same(all(isinstance(line, str) and (line.endswith("\n") or line is cell["source"][-1]) for line in cell["source"]), True, "source")
-        if cell["cell_type"] == "code":
-            code.append("".join(cell["source"]))
-    program = "\n\n".join(code)
-    result = subprocess.run([sys.executable, "-B", "-c", program], capture_output=True, text=True, cwd=WORK.name,
-                            env=dict(os.environ, PYTHONPATH=PYTHON, **({} if LONG else {"DRUM_SECONDS": "0.04"})))
-    if result.returncode:
-        raise AssertionError(result.stderr[-1500:])
-    for word in ("torque = ", "angle of repose", "rolling friction = "):
-        same(word in result.stdout, True, "%r in what it prints" % word)
-    same(os.path.getsize(os.path.join(WORK.name, "drum.html")) > 10000, True, "replay")
-
+# ---- programs ----
 
 @test("a belt in Python: drag is mass flow times speed within 2 %, power is drag times speed")
 def _():
@@ -1301,21 +1279,187 @@ def _():
 
 # ---- the pages ----
 
-@test("the Python programs of docs/python.md and docs/how_to.md run and print what the pages show")
+DEBIAN = {"numpy": "python3-numpy", "pandas": "python3-pandas", "matplotlib": "python3-matplotlib", "tqdm": "python3-tqdm"}
+
+
+def missing(code, what):
+    """Whether a package that the code imports is missing. If so, it prints which."""
+    names = [name for name in re.findall(r"^(?:import|from) (\w+)", code, re.M) if name in DEBIAN and not importlib.util.find_spec(name)]
+    for name in names:
+        print("SKIP: %s not found (Debian package %s): %s is not run" % (name, DEBIAN[name], what))
+    return bool(names)
+
+
+def page(name):
+    """The text of a page."""
+    with open(os.path.join(ROOT, "docs", name), encoding="utf-8") as file:
+        return file.read()
+
+
+def blocks(text):
+    """The Python blocks of a page: code, what the page shows behind it (or ""), and "varies" or ""."""
+    return [(code, shown or line and line + "\n", varies.strip()) for code, varies, shown, line in re.findall(
+        r"```python\n(.*?)```(?:\n```text( varies)?\n(.*?)```|\nIt prints `(.*?)`)?", text, re.S)]
+
+
+def environment(**more):
+    """The environment of a process that imports dem."""
+    return dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, [PYTHON, os.environ.get("PYTHONPATH")])), PYTHONIOENCODING="utf-8",
+                PYTHONDONTWRITEBYTECODE="1", DEM_BUILD=os.path.abspath(os.environ["DEM_BUILD"]), **more)
+
+
+def program(what, *code, folder=WORK.name, **more):
+    """Runs Python code in a process of its own, from a file, because the processes of a pool import it. Returns what it
+    prints."""
+    path = os.path.join(folder, "recipe.py")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n\n".join(code))
+    result = subprocess.run([sys.executable, "-B", path], capture_output=True, text=True, cwd=folder, encoding="utf-8",
+                            env=environment(MPLBACKEND="Agg", **more))
+    if result.returncode:
+        raise AssertionError("%s: %s" % (what, result.stderr[-1500:]))
+    return result.stdout
+
+
+def alike(shown, printed, varies, what):
+    """Compares what a recipe prints with what its page shows, by the rules of the recipes in C."""
+    expected, log = os.path.join(WORK.name, "shown.expected"), os.path.join(WORK.name, "shown.log")
+    for path, text in ((expected, (varies or "same") + "\n" + shown), (log, printed)):
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+    result = subprocess.run(["awk", "-f", os.path.join(ROOT, "tests", "printed.awk"), expected, log], capture_output=True, text=True)
+    if result.returncode:
+        raise AssertionError("%s: the page %s" % (what, (result.stdout or result.stderr)[-800:]))
+
+
+@test("the Python programs of docs/python.md run and print what the page shows")
 def _():
-    for page in ("python.md", "how_to.md"):
-        with open(os.path.join(ROOT, "docs", page)) as file:
-            blocks = re.findall(r"```python\n(.*?)```(?:\n```text\n(.*?)```|\nIt prints `(.*?)`)?", file.read(), re.S)
-        program = "import io, sys\nfrom contextlib import redirect_stdout\n"
-        for code, text, line in blocks:
-            expected = text or line and line + "\n"
-            program += ("with redirect_stdout(io.StringIO()) as out:\n    exec(compile(%r, %r, 'exec'))\nexpected = %r\n"
-                        "if expected and out.getvalue() != expected: sys.exit('the page shows %%r, the program prints %%r' %% (expected, out.getvalue()))\n"
-                        % (code, page, expected))
-        result = subprocess.run([sys.executable, "-B", "-c", program], capture_output=True, text=True, cwd=WORK.name,
-                                env=dict(os.environ, PYTHONPATH=PYTHON))
-        if result.returncode or not blocks:
-            raise AssertionError("%s: %s" % (page, result.stderr[-1500:]))
+    parts = ["import io, sys", "from contextlib import redirect_stdout"]
+    found = blocks(page("python.md"))
+    for code, expected, _ in found:
+        parts.append("with redirect_stdout(io.StringIO()) as out:\n    exec(compile(%r, 'python.md', 'exec'))\nexpected = %r\n"
+                     "if expected and out.getvalue() != expected: sys.exit('the page shows %%r, the program prints %%r' %% (expected, out.getvalue()))"
+                     % (code, expected))
+    same(len(found) > 5, True, "blocks")
+    program("python.md", *parts)
+
+
+@test("the cell of docs/platforms.md runs and shows its replay")
+def _():
+    cell = blocks(page("platforms.md"))[0][0]
+    same(cell.endswith("\nreplay\n"), True, "the last line")
+    printed = program("platforms.md", cell, "print(replay._repr_html_()[:7], len(replay._repr_html_()) > 10000)")
+    same(printed.split("\n")[-2], "<iframe True", "what the cell shows")
+
+
+def recipe(heading, text):
+    @test("python_how_to.md: " + heading)
+    def _():
+        (code, shown, varies), = blocks(text)
+        same((len(code.split("\n")) <= 27, bool(shown)), (True, True), "a recipe has at most 26 lines and shows what it prints")
+        if not missing(code, "the recipe \"%s\"" % heading):
+            with tempfile.TemporaryDirectory() as folder:
+                alike(shown, program(heading, code, folder=folder), varies, heading)
+
+
+for recipe_of in re.findall(r"^### (.*?)\n(.*?)(?=^##|\Z)", page("python_how_to.md"), re.S | re.M):
+    recipe(*recipe_of)
+
+
+@test("the Python lines beside the C lines of docs/how_to*.md run and print what the pages show")
+def _():
+    first, = [code for code, _, _ in blocks(page("how_to.md")) if "\ndef scene(" in code]
+    frame = first[:first.index("# the recipe")]
+    mark = "---- recipe %d ----"
+    os.makedirs(os.path.join(WORK.name, "examples", "data"), exist_ok=True)
+    with open(os.path.join(ROOT, "examples", "data", "hopper.stl"), "rb") as file, \
+         open(os.path.join(WORK.name, "examples", "data", "hopper.stl"), "wb") as copied:
+        copied.write(file.read())
+    for name in ("how_to.md", "how_to_shapes.md", "how_to_more.md"):
+        found = blocks(page(name))
+        same(len(found) > 1, True, "blocks of " + name)
+        whole = [frame] + ["print(%r)\n%s" % (mark % i, code if code != first else code[len(frame):]) for i, (code, _, _) in enumerate(found)]
+        printed = program(name, *whole)
+        for i, (code, shown, varies) in enumerate(found):
+            got = printed.split(mark % i + "\n")[1].split("---- recipe")[0]
+            alike(shown, got, varies, "%s, block %d" % (name, i + 1))
+
+
+# ---- the notebooks ----
+
+# what makes the runs short, words of what a notebook prints, and the kind of its pictures
+NOTEBOOKS = {"drum.ipynb": ({"DRUM_SECONDS": "0.04"}, ("torque = ", "angle of repose", "rolling friction = "), "text/html"),
+             "triaxial.ipynb": ({"TRIAXIAL_GRAINS": "150", "TRIAXIAL_YOUNG": "1e7"}, ("dense: peak angle = ", "loose: peak angle = "), "image/png")}
+
+
+def notebook(name):
+    """Checks the format of a notebook and executes it, with nbconvert if that is installed, else its cells as a program.
+    Returns what it prints."""
+    short, words, picture = NOTEBOOKS[name]
+    path = os.path.join(PYTHON, name)
+    with open(path, encoding="utf-8") as file:
+        book = json.load(file)
+    same((book["nbformat"], book["nbformat_minor"] >= 5), (4, True))
+    same(book["metadata"]["kernelspec"]["language"], "python")
+    ids = [cell["id"] for cell in book["cells"]]
+    same(len(set(ids)), len(ids), "ids")
+    code = []
+    for cell in book["cells"]:
+        same(set(cell) - {"id", "cell_type", "metadata", "source"}, {"outputs", "execution_count"} if cell["cell_type"] == "code" else set(), "keys")
+        same(bool(re.match(r"^[a-zA-Z0-9_-]{1,64}$", cell["id"])), True, cell["id"])
+        same(all(isinstance(line, str) and (line.endswith("\n") or line is cell["source"][-1]) for line in cell["source"]), True, "source")
+        if cell["cell_type"] == "code":
+            same((cell["outputs"], cell["execution_count"]), ([], None), "a notebook is kept without outputs")
+            code.append("".join(cell["source"]))
+    if missing("\n".join(code), name):
+        return None
+    more = {} if LONG else short
+    if all(importlib.util.find_spec(module) for module in ("nbconvert", "ipykernel")):
+        text, pictures = executed(path, more)
+        same(picture in pictures, True, "%s among the outputs" % picture)
+    else:
+        print("SKIP: nbconvert or ipykernel not found (Debian packages python3-nbconvert and python3-ipykernel): the cells of %s "
+              "run as a plain program" % name)
+        text = program(name, *code, **more)
+        if picture == "text/html":
+            same(os.path.getsize(os.path.join(WORK.name, name.replace(".ipynb", ".html"))) > 10000, True, "replay")
+    for word in words:
+        same(word in text, True, "%r in what it prints" % word)
+    return text
+
+
+def executed(path, more):
+    """Executes a notebook. Returns what it prints, and the kinds of its other outputs."""
+    with tempfile.TemporaryDirectory() as folder:           # a notebook runs in the folder in which it is
+        path = shutil.copy(path, folder)
+        result = subprocess.run([sys.executable, "-B", "-m", "nbconvert", "--to", "notebook", "--execute", "--output-dir", folder, "--output",
+                                 "executed", "--ExecutePreprocessor.timeout=600", path], capture_output=True, text=True, cwd=folder,
+                                env=environment(**more))
+        if result.returncode:
+            raise AssertionError("%s: %s" % (os.path.basename(path), result.stderr[-1500:]))
+        with open(os.path.join(folder, "executed.ipynb"), encoding="utf-8") as file:
+            outputs = [output for cell in json.load(file)["cells"] if cell["cell_type"] == "code" for output in cell["outputs"]]
+    return ("".join("".join(output["text"]) for output in outputs if output["output_type"] == "stream"),
+            {kind for output in outputs for kind in output.get("data", ())})
+
+
+@test("drum.ipynb runs and shows a replay")
+def _():
+    notebook("drum.ipynb")
+
+
+@test("triaxial.ipynb runs: a dense sample has a peak, and both samples reach the critical angle")
+def _():
+    text = notebook("triaxial.ipynb")
+    if text is not None:
+        (peak, dense), (_, loose) = [[float(number) for number in pair] for pair in re.findall(
+            r"peak angle = ([\d.]+) degrees, critical angle = ([\d.]+) degrees", text)]
+        same((28 < peak < 37, 17 < dense < 24, 17 < loose < 24), (True, True, True), "angles %s, %s, %s" % (peak, dense, loose))
+
+
+@test("every notebook of examples/python is executed")
+def _():
+    same(sorted(name for name in os.listdir(PYTHON) if name.endswith(".ipynb")), sorted(NOTEBOOKS))
 
 
 # ---- the lessons ----
