@@ -98,6 +98,7 @@ def fields_of(body):
 
 class Header:
     def __init__(self, text):
+        self.text = text
         public = text[text.index("\n#ifndef DEM_H\n"):text.index("\n#endif /* DEM_H */")]
         extra = re.search(r"#define DEM_LAW_COEFFICIENTS\(X\) \\\n((?: *X\(.*\\\n)*)", public).group(1)
         properties = re.findall(r"X\((\w+), (\w+),", extra)
@@ -129,6 +130,19 @@ class Header:
             text, length = self.declaration(rest)
             at += length
             self.declare(text, comment)
+
+    def reads(self, law):
+        """The fields of the force that a law, and the functions to which it passes the force, read and do not set."""
+        read, written, done, queue = set(), set(), set(), [law]
+        while queue:
+            name = queue.pop()
+            done.add(name)
+            body = re.search(r"DEM_INLINE [\w ]+?\b%s\(.*?\n\}\n" % name, self.text, re.S)
+            body = re.sub(r"/\*.*?\*/", "", body.group(0) if body else fail("no body of " + name), flags=re.S)
+            written |= set(re.findall(r"\bf->(\w+)(?:\.\w+)? [-+]?= ", body))
+            read |= set(re.findall(r"\bf->(\w+)\b(?!(?:\.\w+)? [-+]?= )", body))
+            queue += [other for other in re.findall(r"\b(demi?_law_\w+)\([^;]*?\bf\b(?!-)", body) if other not in done]
+        return [name for name in ("slope", "slope_step", "kt", "kt_step", "ct", "load") if name in read - written]
 
     @staticmethod
     def declaration(text):
@@ -314,14 +328,15 @@ class Writer:
         """A function type: how a Python function becomes a C function, and the type."""
         name = camel(f.name)
         struct_result = f.type in self.h.structs and not f.star
-        given, poison, pointers, kept = [], None, [], []
+        given, poison, pointers, kept, consts = [], None, [], [], []
         for a in f.arguments:
             if a.name == "user":
                 continue
             if a.pointer and a.type == "dem_world":
                 given.append("context.world(%s)" % a.name)
             elif a.pointer and a.type in self.h.structs:
-                kept.append((a.name, "%s.from_address(%s)" % (camel(a.type), a.name)))
+                kept.append((a.name, "%s(%s)" % (a.name + "_of" if a.const else camel(a.type) + ".from_address", a.name)))
+                consts += [a] if a.const else []
                 given.append("_" + a.name)
                 if not a.const and (poison is None or poison[1]):
                     poison = (a.name, False)
@@ -347,6 +362,8 @@ class Writer:
                         "no rule for the length of %s of %s" % (a.name, f.name))
             self.write("    %s_type = " % a.name + ("_history(context.memory, context.vectors)" if a.name == "memory" else "%s*%s" % (
                 NUMBERS[a.type], "(%s)" % size if "(" in size else size)))
+        for a in consts:
+            self.write("    %s_of = _read(%s).from_address" % (a.name, camel(a.type)))
         result = "None" if f.type == "void" and not f.star else "ctypes.c_void_p" if f.star else self.plain(f.type)
         self.write("\n    def call(%s):" % names)
         self.write("        try:")
@@ -374,7 +391,8 @@ class Writer:
         if result not in ("None", "ctypes.c_void_p"):
             self.write("            return result")
         self.write("        except BaseException as error:")
-        self.write("            context.fail(error)")
+        self.write("            context.fail(%s)" % ("_beyond(error, %r, %s) if type(error) is IndexError else error" % (about, ", ".join(
+            "%s=%s_type" % (a.name, a.name) for a in pointers)) if pointers else "error"))
         if poison:
             self.write("            Real.from_address(%s).value = _NAN" % poison[0])
         if result in ("ctypes.c_double", "Real"):
@@ -519,7 +537,7 @@ class Writer:
                 value = a.name
                 if kind == "dem_progress_fn":
                     value = "_go_on if %s is None else %s" % (a.name, a.name)
-                pre.append("%s = %s._callback(%s, %s)" % (a.name, world, camel(kind), value))
+                pre.append("%s = %s._callback(%s, %s, %s)" % (a.name, world, camel(kind), value, at(a)))
                 pass_on.append(a.name)
             elif a.name == "count" and counted:
                 pass_on.append("count")
@@ -556,11 +574,11 @@ class Writer:
                         "class_count" if any(x.name == "class_count" for x in args) else "%s._context.reals" % world)
                 if capacity:
                     pre.append("capacity = %s" % ("64" if "finding" in kind else "%s._number(_lib.%s(%s, None, 0))" % (world, f.name, ", ".join(pass_on))))
-                whole = item if width == 1 else "(%s*%d)" % (item, width)
+                whole = item if width == 1 else "_row(%s, %d)" % (item, width)
                 if size in ("count", "class_count") and not counted:
-                    pre.append("%s = (%s*_size_of(%s, %r))()" % (a.name, whole, size, "%s: %s" % (where, size)))
+                    pre.append("%s = _row(%s, _size_of(%s, %r))()" % (a.name, whole, size, "%s: %s" % (where, size)))
                 else:
-                    pre.append("%s = (%s*max(%s, 1))()" % (a.name, whole, size))
+                    pre.append("%s = _row(%s, max(%s, 1))()" % (a.name, whole, size))
                 pass_on.append("ctypes.cast(%s, ctypes.POINTER(%s))" % (a.name, item))
                 outs.append((a.name, size))
             elif a.name == "capacity":
@@ -629,11 +647,11 @@ class Writer:
                 getter = next(g for g in h.functions if g.name == f.name[:-4] + "_get")
                 inner = ("self." + self.short(getter, owner)) if owner not in HANDLES else "self.%s(%s)" % (
                     self.short(getter, owner), ", ".join(p for p, _ in params))
-                pre.append("%s = %s" % (a.name, inner))
-                pre.append("%s._put({name: value for name, value in (%s,) if value is not None})" % (
-                    a.name, ", ".join("(%r, %s)" % (m, m) for m, _ in star)))
+                pre.append("%s = _renamed(lambda: %s, %r, %r)" % (a.name, inner, self.called(getter), where))
+                pre.append("%s._put({name: value for name, value in (%s,) if value is not None}, %r)" % (
+                    a.name, ", ".join("(%r, %s)" % (m, m) for m, _ in star), where + ": "))
             else:
-                pre.append("%s = %s(%s)" % (a.name, camel(kind), ", ".join("%s=%s" % (m, m) for m, _ in star)))
+                pre.append("%s = %s._of_call(%r, dict(%s))" % (a.name, camel(kind), where, ", ".join("%s=%s" % (m, m) for m, _ in star)))
             key = ", (%r, self)" % f.name if owner not in HANDLES else ""
             if any(m.call or m.type in h.calls or m.type in ("dem_motion", "dem_region") or m.type in self.ids for m in members):
                 pre.append("%s = %s._bound(%s%s)" % (a.name, world, a.name, key))
@@ -655,12 +673,17 @@ class Writer:
                          + (["*"] if star else []) + ["%s=%s" % s for s in star])
         prop = owner and f.name.endswith("_get") and not params and not star
         variables = {a.name: a for a in f.arguments}
+        kinds_ = [f.type] if f.type in h.structs and not f.star else [variables[o].type for o, size in outs if variables[o].type in h.structs
+                                                                      and size is None]
         if fields:
             variables.update((m.name, m) for m in self.h.structs[fields[1]][0])
         hints, nulls = ["self"]*bool(owner), self.nulls.get(f.name, ())
         for p, d in params + [("*", "")]*bool(star) + star:
             hints.append(p if p == "*" else "%s: %s%s" % (
                 p, "TextIO | None" if p == "out" else self.hint(variables[p], d == "None" or (p, d) in star or p in nulls), " = ..." if d is not None else ""))
+        struct = kinds_[0] if prop and len(kinds_) == 1 and kinds_[0] not in self.ids else None
+        if struct:
+            self.parts.setdefault(HANDLES.get(owner) or camel(owner), {})[name] = camel(struct)
         self.typed.setdefault(owner, []).append("%s    def %s(%s) -> %s: ..." % (
             "    @property\n" if prop else "", name, ", ".join(hints), self.returned(f, owner, outs)))
         pad = "    " if owner else ""
@@ -777,7 +800,7 @@ class Writer:
         for name, base in (("ArgumentTypeError", "TypeError"), ("ArgumentRangeError", "OverflowError"), ("FieldError", "AttributeError"),
                            ("LoadError", "ImportError")):
             out.append("class %s(Error, builtins.%s): ..." % (name, base))
-        out.append("class NoSuchError(ArgumentError, builtins.IndexError): ...\n")
+        out.append("class NoSuchError(ArgumentError, builtins.IndexError): ...\nclass NoFieldError(ArgumentError, builtins.AttributeError): ...\n")
         for name, (fields, _) in h.structs.items():
             base = BASES.get(name) or ("Id" if name in self.ids else "Struct")
             out.append("class %s(%s):" % (camel(name), base))
@@ -830,7 +853,9 @@ class Writer:
                 return ["return (%s or b'').decode()" % call]
             return ["return " + call]
         if f.name == "dem_group_get":
-            return ["found = " + call, "%s._ok(0)" % world, "if not found:", "    %s._raise(ArgumentError)" % world,
+            return ["if not self.desc.groups:",
+                    "    raise _no_groups(name)",
+                    "found = " + call, "%s._ok(0)" % world, "if not found:", "    %s._raise(ArgumentError)" % world,
                     "found._of = %s" % world, "return found"]
         if f.name == "dem_body_id_get":
             return ["return %s.bodies[index]" % world]
@@ -874,10 +899,10 @@ class Writer:
                 return ["found = %s" % call, "%s._filled(found, 0, %r)" % (world, f.name),
                         "return %s" % ", ".join("list(%s[:found])" % o for o, _ in outs)]
             if size == "capacity" and "finding" not in o:
-                return ["count = %s._number(%s)" % (world, call), "array = (%s._type_*count).from_buffer(%s)" % (o, o),
+                return ["count = %s._number(%s)" % (world, call), "array = _row(%s._type_, count).from_buffer(%s)" % (o, o),
                         "return [item.of(%s) for item in array]" % world if kinds[o] in self.ids else
                         "return Structs(array)" if kinds[o] in h.structs else "return array"]
-            return ["count = %s._number(%s)" % (world, call), "return list(%s[:min(count, len(%s))])" % (o, o)]
+            return ["count = %s._number(%s)" % (world, call), "return list(_fixed(%s)[:min(count, len(%s))])" % (o, o)]
         if f.type == "int" and re.search(r"_(fill|pack)$", f.name):
             return ["return %s._filled(%s, count, %r)" % (world, call, f.name)]
         if f.type == "int" or f.name == "dem_sizes_finer_get":
@@ -912,7 +937,7 @@ class Writer:
 
     def file(self):
         h = self.h
-        self.names = {}
+        self.names, self.parts = {}, {}
         self.write(HEAD)
         for name, value, note in h.constants:
             self.write("%s = %s%s" % (name[4:], value, "    # " + note if note else ""))
@@ -936,6 +961,12 @@ class Writer:
                 if not (found or as_for or "o contact history" in f.doc):
                     fail("the comment of %s does not say what contact history it needs" % f.name)
                 self.write("    %r: %r," % (f.name[4:], needs[f.name[4:]]))
+        self.write("}\n")
+        self.write("_LAW_READS = {      # fields of the force that a friction or rolling law reads, which a normal law sets")
+        for law in needs:
+            fields = h.reads("dem_" + law)
+            if fields:
+                self.write("    %r: %r," % (law, tuple(fields)))
         self.write("}\n")
         self.errors()
         with open(os.path.join(HERE, "base.py")) as file:
@@ -980,7 +1011,7 @@ class Writer:
             note = m.doc
         init = WORLD % ("\n".join(["    " + lines[0]] + ["            " + line for line in lines[1:]]),
                         doc_lines(8, "Creates an empty world. ArgumentError says which value is out of range.", docs),
-                        textwrap.fill("self._create(WorldDesc(%s))" % ", ".join("%s=%s" % (m.name, m.name) for m in members), 108,
+                        textwrap.fill("self._create(WorldDesc._of_call(\"World\", dict(%s)))" % ", ".join("%s=%s" % (m.name, m.name) for m in members), 108,
                                       initial_indent=" "*8, subsequent_indent=" "*12))
         h.functions.remove(create)
         self.create = create
@@ -1002,6 +1033,14 @@ class Writer:
         self.write("]")
         self.write("\nfor _name in %s:" % '[name for name in Bodies.kinds if name not in ("count", "real_count")]')
         self.write("    setattr(Rows, _name, _row_property(_name, next(doc for name, _, doc in Bodies.rows if name == _name)))")
+        self.write("_PARTS = {      # structs that properties return")
+        for owner, parts in self.parts.items():
+            for line in folded("%r: {%s}," % (owner, ", ".join("%r: %s" % pair for pair in parts.items())), 114, "    "):
+                self.write("    " + line)
+        self.write("}")
+        self.write("_bind_all(globals())")
+        self.write('__all__ = [_name for _name, _value in globals().items() if _name[0] != "_" and not isinstance(_value, types.ModuleType)')
+        self.write("           and not hasattr(builtins, _name)]")
         for owner, names in self.names.items():
             for name in names:
                 if names.count(name) > 1:
@@ -1045,7 +1084,11 @@ class LoadError(Error, ImportError):
 
 
 class NoSuchError(ArgumentError, IndexError):
-    """There is no body of this number."""
+    """There is no body, element or row of this number."""
+
+
+class NoFieldError(ArgumentError, AttributeError):
+    """There is no field or attribute of this name."""
 '''
 
 ZEROS = {("dem_world_settle", "speed"), ("dem_effects_get", "budget"), ("dem_effects_print", "budget"),
@@ -1077,6 +1120,7 @@ below are the comments of dem.h, which name C functions. Rules of names:
     DEM_ERROR_TIME_STEP                     raises dem.TimeStepError, whose text is the error message
     struct dem_motion                       dem.Motion, or keyword arguments: wall.motion_set(kind="rotating", ...)
 """
+import builtins
 import ctypes
 import enum
 import functools
@@ -1088,6 +1132,7 @@ import math
 import operator
 import os
 import platform
+import re
 import shutil
 import signal
 import subprocess
@@ -1175,6 +1220,33 @@ class Structs:
     def __getitem__(self, index: Any) -> Any: ...
     def __array__(self, dtype: Any = ..., copy: Any = ...) -> Any: ...
     def to_dict(self) -> dict[str, list[Any]]: ...
+
+class Array:
+    view: memoryview
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    ndim: int
+    nbytes: int
+    itemsize: int
+    readonly: bool
+    format: str
+    def __init__(self, view: Any) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: Any) -> Any: ...
+    def __setitem__(self, index: Any, value: Any) -> None: ...
+    def __iter__(self) -> Iterator[Any]: ...
+    def __array__(self, dtype: Any = ..., copy: Any = ...) -> Any: ...
+    def tolist(self) -> list[Any]: ...
+    def tobytes(self) -> bytes: ...
+
+class Row(ctypes.Array[Any]):
+    def __add__(self, other: Any) -> Any: ...
+    def __radd__(self, other: Any) -> Any: ...
+    def __sub__(self, other: Any) -> Any: ...
+    def __rsub__(self, other: Any) -> Any: ...
+    def __mul__(self, other: Any) -> Any: ...
+    def __rmul__(self, other: Any) -> Any: ...
+    def __truediv__(self, other: Any) -> Any: ...
 
 class Page:
     def __init__(self, path: str | os.PathLike[str], height: int = ...) -> None: ...
