@@ -1537,7 +1537,7 @@ def _struct(cls):
     cls.whole = cls.__name__ == "Box"
     cls._fields_ = fields
     if docs:
-        cls.__doc__ = (cls.__doc__ or "") + "\n\n" + "\n".join(docs)
+        cls.__doc__ = "\n".join(line.strip() for line in (cls.__doc__ or "").split("\n")).strip() + "\n\n" + "\n".join(docs)
     return cls
 
 

@@ -77,10 +77,10 @@ def fields_of(body):
         text = token.group(0)
         if text.startswith("/*"):
             doc = clean(text)
-            if last and "\n" not in body[last[0]:token.start()] and not last[2]:
-                for field in last[1]:
-                    field.doc = doc
-                last[2] = True
+            if last and "\n" not in body[last[0]:token.start()] and last[2] is not None:
+                for field in last[1]:                       # behind a field, perhaps after a comment in front of it
+                    field.doc = doc + (". " + field.doc if field.doc else "")
+                last[2] = None
             else:
                 pending, last = doc, []
             continue
@@ -93,6 +93,52 @@ def fields_of(body):
             new = [Var(names[0], pending)] + [Var(base + " " + name.strip(), pending) for name in names[1:]]
         fields += new
         last, pending = [token.end(), new, bool(pending)], "" if pending else pending
+    return fields
+
+
+UNIT = r"(?:(?:m|s|kg|N|Pa|J|Hz|rad|W)\d*|[/ ()^\d])+"
+
+
+def parted(doc, names):
+    """A comment that several fields share as one for each, if it has as many parts as there are fields; None otherwise."""
+    found = re.match(r"((?:%s)(?:(?:, | and )%s){%d})(?=$|[.:,])(.*)$" % (UNIT, UNIT, len(names) - 1), doc, re.S)
+    if found:                                               # m, m/s, rad/s: of ...
+        return [unit + found.group(2) for unit in re.split(", | and ", found.group(1))]
+    parts, head, tail = [part.strip() for part in split(doc, ";")], "", ""
+    if len(parts) != len(names) or any(". " in part for part in parts[:-1]):
+        return None
+    own = all(re.match(r"%s\b" % name, part) for name, part in zip(names, parts))
+    if not own and any(re.match(r"(%s) (is|0|null)|\W*\d|otherwise|negative|compare|then\b|max|null|the pointers|both must|random mixtures" % "|".join(names), part)
+                       or " 0 means" in part for part in parts):
+        return None
+    first = re.match(r"([^;:\[]{1,90}): (.+)", parts[0])
+    last = re.match(r"([^:]*)(: .*)", parts[-1])
+    if own:
+        return [re.sub("^%s(?::| is|(?= null means)) " % name, "", part) for name, part in zip(names, parts)]
+    if first and " and " not in first.group(1):             # lost: by ...; by ...
+        head, parts[0] = first.group(1) + ": ", first.group(2)
+    elif last and re.fullmatch(UNIT, parts[0]) and last.group(1) != names[-1]:      # m; unit, from a to b: where ...
+        tail, parts[-1] = last.group(2), last.group(1)
+    parts = [re.sub("^(and|%s:) " % name, "", part) for name, part in zip(names, parts)]
+    for i, part in enumerate(parts[1:], 1):                 # J, lost on it by sliding; by the normal law
+        found = re.match(r"(by|to|of) ", part)
+        at = parts[0].find(" %s " % found.group(1)) if found else -1
+        if at > 0:
+            parts[i] = parts[0][:at + 1] + part
+    return [head + part + tail for part in parts]
+
+
+def share(fields):
+    """Gives fields that share a comment their parts of it."""
+    begin = 0
+    while begin < len(fields):
+        end = begin + 1
+        while end < len(fields) and fields[end].doc and fields[end].doc == fields[begin].doc:
+            end += 1
+        parts = parted(fields[begin].doc, [f.name for f in fields[begin:end]]) if end - begin > 1 else None
+        for f, part in zip(fields[begin:end], parts or ()):
+            f.doc = part
+        begin = end
     return fields
 
 
@@ -184,7 +230,7 @@ class Header:
             return
         found = re.match(r"(?:typedef )?struct (\w+) \{(.*)\}[ \w]*;$", text, re.S)
         if found:
-            self.structs[found.group(1)] = (fields_of(found.group(2)), doc)
+            self.structs[found.group(1)] = (share(fields_of(found.group(2))), doc)
             return
         found = re.match(r"typedef ([\w ]+?\*?) ?\(\*(\w+)\)\((.*)\);$", text, re.S)
         if found:
@@ -219,14 +265,69 @@ def folded(line, width, indent):
                                                                  break_on_hyphens=False)]
 
 
+# comments of C in the words of Python: pattern, replacement; the first ones first
+SAY = [(r" ?\(>>\w+( has the formulas)?\)|, >>\w+(?=\))", ""), (r" Begin with DEM_\w+_DESC(: they do not)?\.", ""),
+       (r"\bDEM_SELECTION, all zero,", "Selection()"), (r"\bDEM_MOTION\b", "Motion()"),
+       (r" Free (it |the mesh |)with dem_\w+_free\.", ""),
+       (r"(Writes|writes) (the .*?|for every effect .*?|positions \(count x 3\) and radii \(count\)),? (at most `capacity` of them, )?and returns their number"
+        r"( \(0: the wall has no facets\))?\.", lambda m: ("Returns " if m.group(1) == "Writes" else "returns ") + m.group(2).rstrip(",") + "."),
+       (r"Writes (the ids .*?), at most `capacity` of them\. Returns how many are selected, -1 on error\.", r"Returns \1."),
+       (r", and returns how many it found \(0 if the call fails\)\. Writes at most `capacity` findings, the most severe first; `findings` or null\.",
+        ", and returns them, the most severe first."),
+       (r"Writes for every effect", "Returns for every effect"), (r": writes positions \(count x 3\) and radii \(count\), in m,", ": returns positions (count x 3) and "
+        "radii, m,"), (r"Writes pointers to the sums of a field to `data`\.", "Returns views of the sums of a field."),
+       (r" `(out|findings)` or null(, to count them)?\.", ""), (r" (user|work|fit|health|fn and user): or null\.", ""),
+       (r" walls: receives `count` ids; or null\.", ""), (r" user: not used, or null, as in the next three\.", ""),
+       (r"and, if `health` is not null, counts", "and counts"), (r"\(capacity x ", "(count x "),
+       (r"^Writes (the (?:state|contact properties|sums|loads|pose|desc|\w+(?: \w+)*?) of [^.]*?),? to `?\w+`?\.", r"Returns \1."),
+       (r"Returns the number of classes that are not empty; 0 on error\.", "Returns the radii and the amounts of the classes that are not empty."), (r"name: for error messages; or null\.", "name: for error messages."),
+       (r"(reads? \w+( \w+)*? from memory), `size` bytes at `data`", r"\1 (`data`)"), (r", `size` bytes at `data`", " (`data`)"),
+       (r"\bprogress: or null\.", "progress: a function, or None."), (r" desc: or null, for DEM_REPLAY_DESC\.", ""),
+       (r"; zeros (if there is none|for a null world)", ""), (r" For a null world the message says that it is null\.", ""),
+       (r" \(0 if the call fails\)", ""), (r"[,;] (-1|0) on error", ""), (r", -1 on error", ""),
+       (r"Returns -1 on error, also (while|if)", r"It is an error \1"), (r"Returns -1 (also )?(if|while)", r"It is an error \2"),
+       (r", and returns -1 where a step would fail", ""), (r"Returns their number\.", "Returns their number."),
+       (r"\bNull\b", "None"), (r"the null id\b", "the id 0"), (r"\bor null\b", "or None"), (r"\bnull\b", "None"), (r"\b([Ii])d 0 means", "None means"),
+       (r"\b(c|f|force|s)->", r"\1."), (r"(?<![\w)] )\*c\b", "c"), (r"\breturn(s?) DEM_ERROR_", r"raise\1 DEM_ERROR_"), (r"\bstruct (dem_\w+)", r"\1")]
+NUMBERS_DOC = ("The numbers (World(body_reals=...)) of %s. Values must be finite. Laws use them from the next step on. It is an error if the world has no "
+               "names of such numbers.")
+DOCS = {name: NUMBERS_DOC % what for name, what in (
+    ("dem_body_reals_get", "a body, as a copy"), ("dem_body_reals_set", "a body: sets them"), ("dem_wall_reals_get", "a wall, as a copy"),
+    ("dem_wall_reals_set", "a wall: sets them"), ("dem_bodies_reals_set", "all bodies, count x real_count: sets them, in the order of "
+                                                                        "world.bodies_memory"))}
+DOCS["dem_world_error_get"] = ('Returns the error message of the last call on this world that failed; "" if none failed. Exceptions have it already.')
+
+
 class Writer:
     def __init__(self, header):
         self.h, self.out = header, []
+        self.spoken = {}        # names of C in Python
         self.ids = [n for n, (fields, _) in header.structs.items()
                     if [f.name for f in fields] in (["id"], ["slot", "generation"])]
         self.typed = {}         # annotated signatures, by owner
         self.nulls = {}         # arguments that may be None, by function
         self.free = {f.name[:-5]: f.name for f in header.functions if f.name.endswith("_free")}
+
+    def say(self, text):
+        """A comment of dem.h in the words of Python."""
+        h = self.h
+        if not self.spoken:
+            self.spoken.update((f.name, self.called(f) if self.owner(f) or f.name == "dem_world_create_checked" else "dem." + self.called(f))
+                               for f in h.functions)
+            self.spoken.update(dem_world_create="World", dem_world_destroy="World.close", dem_replay_close="Replay.close")
+            self.spoken.update((name, camel(name)) for name in list(h.structs) + list(h.enums) + list(h.calls) + list(HANDLES))
+            for name, (values, _) in h.enums.items():
+                words = [value for value, _, _ in values]
+                prefix = os.path.commonprefix(words)
+                prefix = prefix[:prefix.rindex("_") + 1]
+                for word in words:
+                    self.spoken[word] = '"%s"' % word[len(prefix):].lower() if name != "dem_result" else (
+                        camel(word[len("DEM_ERROR_"):].lower()) + "Error" if "ERROR" in word else word)
+            self.spoken.update((name, "dem." + name[4:]) for name, _, _ in h.constants)
+            self.spoken.update(DEM_RAIL_="dem.RAIL_")
+        for pattern, words in SAY:
+            text = re.sub(pattern, words, text)
+        return re.sub(r"\b(dem_\w+|DEM_\w+)(\(\))?", lambda m: self.spoken.get(m.group(1), m.group(0)), text).replace("World.World.", "World.")
 
     def write(self, text=""):
         self.out.append(text.rstrip("\n"))
@@ -315,12 +416,12 @@ class Writer:
         if name == "dem_result":
             prefix = "DEM_"
         self.write("\n\nclass %s(enum.IntEnum):" % camel(name))
-        self.write(doc_lines(4, doc))
+        self.write(doc_lines(4, self.say(doc)))
         for value, number, note in values:
             short = value[len(prefix):]
             short = "_" + short if short[0].isdigit() else short
             if note:
-                for line in textwrap.wrap(note, 112):
+                for line in textwrap.wrap(self.say(note), 112):
                     self.write("    # " + line)
             self.write("    %s = %d" % (short, number))
 
@@ -352,7 +453,7 @@ class Writer:
                 given.append(a.name)
         if struct_result:           # ctypes has no functions that return a struct: see World.__init__
             self.write("\n\n%s = Function(None, ctypes.c_void_p)" % name)
-            self.write("%s.__doc__ = %r" % (name, f.doc))
+            self.write("%s.__doc__ = %r" % (name, self.say(f.doc)))
             return
         names = ", ".join(a.name for a in f.arguments)
         self.write("\n\ndef _wrap_%s(function, context, struct):" % f.name)
@@ -403,7 +504,7 @@ class Writer:
         self.write("    return ctypes.cast(ctypes.CFUNCTYPE(%s)(call), %s.c)" % (", ".join([result] + kinds), name))
         self.write("\n\n%s = Function(%s)" % (name, ", ".join(
             ["_wrap_" + f.name, result] + [self.value(a, False) for a in f.arguments])))
-        self.write("%s.__doc__ = %r" % (name, f.doc))
+        self.write("%s.__doc__ = %r" % (name, self.say(f.doc)))
 
     def struct(self, name):
         fields, doc = self.h.structs[name]
@@ -423,9 +524,9 @@ class Writer:
                         a for arrays in self.counts(name, fields).values() for a, _ in arrays]
                     kind = "View(%s)" % ", ".join([self.plain(f.type)] + (shape or []) + (["const=True"] if f.const else [])
                                                   + (["one=True"] if one else []))
-            rows.append((f.name, kind, f.doc))
+            rows.append((f.name, kind, self.say(f.doc)))
         self.write("\n\n@_struct\nclass %s(%s):" % (camel(name), BASES.get(name) or ("Id" if name in self.ids else "Struct")))
-        self.write(doc_lines(4, doc or "The id of a %s." % name[4:]))
+        self.write(doc_lines(4, self.say(doc) or "The id of a %s." % name[4:]))
         self.write("    c_name = %r" % name)
         counts = self.counts(name, fields)
         if counts:
@@ -636,6 +737,10 @@ class Writer:
         if fields:
             a, kind = fields
             members = self.h.structs[kind][0]
+            lengths = self.counts(kind, members)
+
+            def hidden(m):
+                return m.name in lengths or m.type == "void"
             base = f.name.endswith("_set") and any(g.name == f.name[:-4] + "_get" for g in h.functions)
             taken = {p for p, _ in params}
             sets = re.match(r"Sets ([\w, ]+)\.", f.doc)         # the fields that the function uses, if it names them
@@ -660,8 +765,8 @@ class Writer:
                 if m.name in taken:
                     continue
                 words = self.words(m)
-                if (m.doc or words) and (m.doc != note or words):
-                    docs.append("%s: %s" % (m.name, "; ".join(filter(None, (m.doc, words)))))
+                if (m.doc or words) and (m.doc != note or words) and not hidden(m):
+                    docs.append("%s: %s" % (m.name, "; ".join(filter(None, (self.say(m.doc), words)))))
                 note = m.doc
             if base:
                 docs.insert(0, "Fields that are not given stay as they are.")
@@ -694,7 +799,15 @@ class Writer:
             self.write(pad + "@property")
         lines = textwrap.wrap("def %s(%s):" % (name, text), 118 - len(pad) - 8, break_long_words=False, break_on_hyphens=False)
         self.write("\n".join([pad + lines[0]] + [pad + "        " + line for line in lines[1:]]))
-        self.write(doc_lines(len(pad) + 4, f.doc, docs))
+        made = self.returned(f, owner, outs)
+        if made == "Structs":
+            made = "Structs of " + camel(next(variables[o].type for o, size in outs))
+        if made == "ctypes.Array[Any]":
+            made = "Row"
+        if re.search("[A-Z]", made) and not made.endswith("None"):
+            made = re.sub(r"ctypes\.Array\[Any\]", "Row", made)
+            docs.append("Returns: %s" % re.sub(r"^list\[(\w+)\]$", r"a list of \1", re.sub(r"^tuple\[(.*)\]$", r"\1", made)))
+        self.write(doc_lines(len(pad) + 4, self.say(DOCS.get(f.name, f.doc)), docs))
         body = pre + self.ending(f, owner, world, call, outs, params)
         for line in body:
             inner = line[:len(line) - len(line.lstrip())]
@@ -1006,8 +1119,8 @@ class Writer:
         docs, note = [], None
         for m in members:
             words = self.words(m)
-            if (m.doc or words) and (m.doc != note or words):
-                docs.append("%s: %s" % (m.name, "; ".join(filter(None, (m.doc, words)))))
+            if (m.doc or words) and (m.doc != note or words) and m.type != "void":
+                docs.append("%s: %s" % (m.name, "; ".join(filter(None, (self.say(m.doc), words)))))
             note = m.doc
         init = WORLD % ("\n".join(["    " + lines[0]] + ["            " + line for line in lines[1:]]),
                         doc_lines(8, "Creates an empty world. ArgumentError says which value is out of range.", docs),
@@ -1106,7 +1219,7 @@ HEAD = '''"""dem.py gives dem.h to Python: ctypes and the standard library, noth
     print(ball.state.position)
 
 make.py made this file from dem.h and base.py: change those, then `make python`. docs/python.md is the manual. The texts
-below are the comments of dem.h, which name C functions. Rules of names:
+below are the comments of dem.h with the names of Python. Rules of names:
 
     dem_world_step(world, 1)                world.step(1)           functions of a world are methods
     dem_sphere_add(world, ...)              world.sphere(...)       _add, _get, _open, _create are dropped

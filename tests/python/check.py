@@ -1436,6 +1436,32 @@ def _():
     same([name for name in dem.__all__ if inspect.ismodule(getattr(dem, name))], [])
 
 
+@test("help() speaks of Python: no names, pointers or error codes of C; functions say what they return, fields have their own comment")
+def _():
+    texts = {}
+    for kind in [dem.World, dem.Replay, dem.Slabs, dem] + dem.structs:
+        texts[kind.__name__] = kind.__doc__ if kind is not dem else ""
+        for name, member in vars(kind).items():
+            member = member.fget if isinstance(member, property) else member
+            if name[0] != "_" and inspect.isfunction(member) and member.__module__ == "dem" and (kind is dem or not hasattr(dem.Struct, name)):
+                texts["%s.%s" % (kind.__name__, name)] = member.__doc__
+    same(len(texts) > 250, True, "docstrings")
+    for name, text in texts.items():
+        if name not in ("dem.build", "dem.load", "dem.compile"):            # which speak of the environment
+            found = re.search(r"\b[Nn]ull\b|Free with|on error|[Rr]eturns -1|`out`|capacity|\bdem_\w+|\bDEM_(?!DOMAIN_BODIES|NO_|ROW_GROUP|LAW)\w+|>>\w|\w->\w|Returns: None", text or "")
+            same(found and text[max(0, found.start() - 60):found.end() + 20], None, name)
+    for kind, name, words in ((dem.Body, "state", "Returns: BodyState"), (dem.World, "contacts", "Returns: Structs of ContactInfo"),
+                              (dem.World, "sphere", "Returns: Body"), (dem.World, "check", "Returns: a list of Finding"),
+                              (dem.World, "mesh_read", "Returns: Mesh, MeshHealth")):
+        member = inspect.getattr_static(kind, name)
+        same(words in inspect.getdoc(member), True, name)
+    for kind, lines in ((dem.BodyState, ("position: m\n", "velocity: m/s\n", "torque: N m: of the last step")), (dem.Totals, ("momentum: momentum, kg m/s",)),
+                        (dem.Motion, ("frequency: Hz: of oscillating walls",)), (dem.Ledger, ("walls: supplied: work of moving walls",)),
+                        (dem.ContactForce, ("load: N, >= 0: L of Coulomb", "elastic: N, the part of"))):
+        for line in lines:
+            same(line in kind.__doc__, True, "%s in the docstring of %s" % (line, kind.__name__))
+
+
 # ---- all calls ----
 
 @test("no call with wrong values in any argument ends the process, and each exception is a dem.Error")
