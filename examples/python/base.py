@@ -1334,10 +1334,10 @@ class Row:
         return _row_from, (kind, lengths, bytes(self))
 
     def __copy__(self):
-        return type(self).from_buffer_copy(self)
+        return _row(self._type_, len(self)).from_buffer_copy(self)
 
     def __deepcopy__(self, memo):
-        return type(self).from_buffer_copy(self)
+        return self.__copy__()
 
     def _with_each(self, other, function, swap=False):
         if self._type_ not in _NUMBERS:
@@ -1354,6 +1354,12 @@ class Row:
 def _row(kind, length):
     """The type of an array of this length."""
     return type("Row", (Row, ctypes.Array), {"_type_": kind, "_length_": length, "__module__": __name__})
+
+
+@functools.lru_cache(1024)
+def _row_read(kind, length):
+    """The type of an array that a function receives and may only read."""
+    return type("Row", (_row(kind, length),), {"_call": "a function may only read it", "plain": True, "__module__": __name__})
 
 
 def _row_from(kind, lengths, data):
@@ -2187,7 +2193,7 @@ class Rows:
     world runs: rows are in the order of the slots of bodies, which is the order of adding. A body that is added after
     another one was removed may take its slot, and then its place.
 
-    Each use of an array is a copy of what the world has then, read-only: positions (N x 4: x, y, z, radius, m), velocities
+    Each use of an array is a copy of what the world has then, read-only, as an Array: positions (N x 4: x, y, z, radius, m), velocities
     (N x 4: x, y, z, 0, m/s), spins (rad/s), forces (N, without gravity), torques (N m), masses (kg), slots, materials,
     orientations (N x 4: w, x, y, z), shapes, reals (N x real_count), rates, groups. world.bodies_memory has the arrays of
     dem.h without a copy, in an order that changes while the world runs.

@@ -461,8 +461,8 @@ class Writer:
             size = {"memory": "context.memory", "rates": "2" if "rate_fn" in f.name else "context.reals", "reals": "context.reals",
                     "values": "len((struct.columns or '').split())"}.get(a.name) or fail(
                         "no rule for the length of %s of %s" % (a.name, f.name))
-            self.write("    %s_type = " % a.name + ("_history(context.memory, context.vectors)" if a.name == "memory" else "%s*%s" % (
-                NUMBERS[a.type], "(%s)" % size if "(" in size else size)))
+            self.write("    %s_type = " % a.name + ("_history(context.memory, context.vectors)" if a.name == "memory" else
+                "_row_read(%s, %s)" % (NUMBERS[a.type], size) if a.const else "%s*%s" % (NUMBERS[a.type], "(%s)" % size if "(" in size else size)))
         for a in consts:
             self.write("    %s_of = _read(%s).from_address" % (a.name, camel(a.type)))
         result = "None" if f.type == "void" and not f.star else "ctypes.c_void_p" if f.star else self.plain(f.type)

@@ -1266,6 +1266,14 @@ def _():
     def lift(body, id, time, force, torque):
         raises(AttributeError, lambda: setattr(body.velocity, "x", 0), "a function may only read it")
         force.z = 1
+    def heat(reals, rates, body, id, time, dt):
+        raises(AttributeError, lambda: rates.__setitem__(0, 1.0), "a function may only read it")
+        raises(IndexError, lambda: rates[1], "numbers 0 to 0")
+        reals[0] = rates[0] + 1
+    warm, glass = heap(body_reals="heat", body_reals_fn=heat)
+    warm.sphere(glass, 0.01, (0, 0, 0.5))
+    warm.step(2)
+    same(warm.bodies.reals.tolist(), [[1]])
     other, glass = heap(law=law, law_stiffness=1e4, body_force=lift)
     other.sphere(glass, 0.01, (0, 0, 0.0099))
     other.step(2)
