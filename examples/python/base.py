@@ -1136,11 +1136,6 @@ class Struct(ctypes.Structure):
     def __delattr__(self, name):
         raise FieldError("%s.%s: a field cannot be deleted" % (type(self).__name__, name))
 
-    def __getattr__(self, name):
-        if name[:1] == "_" or name in ("shape", "dtype", "tolist"):     # what numpy and others look for
-            raise AttributeError("%s has no attribute %r" % (type(self).__name__, name))
-        raise NoFieldError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
-
     @classmethod
     def make(cls, value):
         """This struct from an instance, a sequence, a dict, or None (zeros)."""
@@ -1673,19 +1668,24 @@ def _real_from(value, kind):
 
 
 def _no_attribute(thing, name):
-    """The exception for an attribute that a world or an id does not have. It names the struct that has such a field."""
+    """The exception for an attribute that an id does not have. It names the struct that has such a field."""
     kind = type(thing)
     if name[:1] == "_" or name in ("shape", "dtype", "tolist"):     # what numpy and others look for
         return AttributeError("%s has no attribute %r" % (kind.__name__, name))
     one, parts = kind.__name__.lower(), _PARTS.get(kind.__name__, {})
-    found = ["%s.%s.%s" % (one, part, name) for part in sorted(parts, key=lambda part: part not in ("state", "desc", "totals"))
+    found = ["%s.%s.%s" % (one, part, name) for part in sorted(parts, key=lambda part: part not in ("state", "desc"))
              if name in parts[part].kinds]
     words = [word for word in dir(kind) if word[0] != "_" and word not in dir(Struct)]
     if name + "s" in words:
         found.insert(0, "%s.%ss" % (one, name))
     if found:
         return NoFieldError("%s has no attribute %r; read %s" % (kind.__name__, name, " or ".join(found[:3])))
-    return NoFieldError("%s has no attribute %r%s" % (kind.__name__, name, _near(name, words)))
+    import difflib
+
+    fields = {field: "%s.%s" % (part, field) for part in sorted(parts) for field in parts[part].kinds}
+    near = difflib.get_close_matches(name, words + list(fields), 2)
+    return NoFieldError("%s has no attribute %r%s" % (kind.__name__, name, "; did you mean %s?" % " or ".join(
+        "%s.%s" % (one, fields.get(word, word)) for word in near) if near else _near(name, words)))
 
 
 def _no_groups(name):
@@ -1714,12 +1714,6 @@ class Handle:
             raise ArgumentError("%s.%s: this %s is closed" % (type(frame.f_locals.get("self", self)).__name__, frame.f_code.co_name,
                                                              type(self).__name__.lower()))
         return at
-
-    def __getattr__(self, name):
-        found = getattr(type(self), name, None)
-        if isinstance(found, property):                     # whose function has raised an AttributeError: once more
-            return found.fget(self)
-        raise _no_attribute(self, name)
 
     def __setattr__(self, name, value):
         found, kind = getattr(type(self), name, None), type(self).__name__
@@ -1817,7 +1811,7 @@ class Handle:
             if added == 0 and (count or text.startswith(name)):
                 self._raise(Error)
             if added:
-                warnings.warn(text, stacklevel=4)
+                warnings.warn(_in_python(text), stacklevel=4)
         return added
 
     def _bound(self, struct, key=None):
@@ -1844,14 +1838,15 @@ class Handle:
 
     def _callback(self, kind, function, where):
         """A C function of a Python function, for one call. where: the call and the argument."""
+        if function is _go_on and self._context.go_on:
+            return self._context.go_on
         if function is None:
             return kind.c()
         if not callable(function) or isinstance(function, type):
             raise ArgumentTypeError("%s: %s, a function is wanted%s" % (where, _given(function), "; world.run(1, dem.progress_print) prints "
                                                                         "the progress" if where.endswith(": progress") else ""))
         if function is _go_on:
-            if not self._context.go_on:
-                self._context.go_on = kind.wrap(_go_on, self._context, None)
+            self._context.go_on = kind.wrap(_go_on, self._context, None)
             return self._context.go_on
         if isinstance(function, ctypes._CFuncPtr):
             return ctypes.cast(function, kind.c)
