@@ -824,10 +824,10 @@ def _binds_law(function, name):
     def bind(*values, **fields):
         try:
             return library[key](*values, **fields)
-        except TypeError as error:
-            if error.__traceback__.tb_next is not None:
-                raise
+        except TypeError:
             found = _unbound(function, "dem." + name, values, fields)
+            if not found:
+                raise
         except KeyError:                                    # the library is not loaded yet
             return function(*values, **fields)
         raise found
