@@ -797,6 +797,7 @@ def _unbound(function, where, values, fields):
 
 
 def _short(value):
+    """A value as an error message shows it, without its type."""
     text = _given(value)
     return text[:text.rindex(" (")] if text.endswith(" is given") and " (" in text else text.replace(" is given", "")
 
@@ -2528,7 +2529,7 @@ class Rows:
     def __setattr__(self, name, value):
         if name not in ("positions", "velocities", "spins"):
             raise FieldError("World.bodies.%s cannot be set; %s" % (name, _SETTERS.get(name) or "positions, velocities and spins can%s" % (
-                _near(name, ("positions", "velocities", "spins", "radii", "reals"))if name not in Bodies.kinds else "")))
+                _near(name, ("positions", "velocities", "spins", "radii", "reals")) if name not in Bodies.kinds else "")))
         ids = self._all()
         array = _array_of(value, Real, "World.bodies.%s" % name, 3, len(ids))
         if "dempy_put" in _lib.__dict__:
