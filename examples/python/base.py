@@ -318,6 +318,16 @@ def _chars(value, null=True):
     return value
 
 
+def _renamed(function, wrong, right):
+    """What a function returns. Its error messages begin with the name of the call that uses it."""
+    try:
+        return function()
+    except Error as error:
+        if str(error).startswith(wrong + ":"):
+            raise type(error)(right + str(error)[len(wrong):]) from None
+        raise
+
+
 def _text_of(value, where):
     """value as the bytes of a C text; None is refused."""
     try:
@@ -329,7 +339,7 @@ def _text_of(value, where):
 def _data_of(value, where):
     """value as bytes: of a text, or of a buffer."""
     try:
-        return value.encode() if isinstance(value, str) else bytes(memoryview(value))
+        return value.encode() if isinstance(value, str) else bytes(memoryview(value.view if isinstance(value, Array) else value))
     except TypeError:
         raise ArgumentTypeError("%s: %s, a text or bytes are wanted" % (where, _given(value))) from None
 
@@ -380,6 +390,11 @@ def _size_of(count, where):
 
 def _converter(kind, null):
     """A function that takes an argument of a call to its C type, or None if ctypes takes it as it is."""
+    if kind is ctypes.c_double:
+        return lambda value: value if type(value) is float else _number(value, kind)
+    if kind in _LIMITS:
+        low, high = _LIMITS[kind]
+        return lambda value: value if type(value) is int and low <= value <= high else _number(value, kind)
     if kind in _NUMBERS:
         return lambda value: _number(value, kind)
     if isinstance(kind, type) and issubclass(kind, Id):
@@ -399,13 +414,18 @@ def _converter(kind, null):
     return None
 
 
+_PROOFS = []                    # what makes the built-in laws check again that the normal law has set what they read
+
+
 def _law_checked(entry, name, needs):
     """A built-in law, with its arguments checked. needs: numbers of contact history, and vectors among them."""
     numbers, vectors = needs
+    passed = object if numbers else type(None)              # the type of a contact history that has passed
 
-    def call(contact, memory, force):
-        if type(contact) is not Contact or type(force) is not ContactForce:
-            wrong, kind = (contact, Contact) if type(contact) is not Contact else (force, ContactForce)
+    def check(c, memory, f):
+        nonlocal passed
+        if type(c) is not Contact and type(c) is not _read(Contact) or type(f) is not ContactForce:
+            wrong, kind = (f, ContactForce) if type(c) in (Contact, _read(Contact)) else (c, Contact)
             raise ArgumentTypeError("%s: %s: %s, a %s is wanted" % (name, "c" if kind is Contact else "f", _given(wrong), kind.__name__))
         if numbers or memory is not None:
             if not isinstance(memory, ctypes.Array) or memory._type_ is not Real:
@@ -419,7 +439,44 @@ def _law_checked(entry, name, needs):
                 raise ArgumentError("%s: memory: the first three numbers of its contact history are a vector, which law_vectors "
                                     "does not count; make the world with law_vectors=1 or more, and give vectors the first places"
                                     % name)
-        entry(contact, memory, force)
+            passed = type(memory)
+
+    fields = _LAW_READS.get(name[4:], ())
+    proved = not fields
+    stiff = [field for field in fields if field not in ("ct", "load")]
+    limit = "spinning_friction" if "twist" in name else "rolling_friction" if "roll" in name else "friction"
+
+    def prove(c, f):
+        """Raises if the normal law in front of this one has set no field that this law reads; warns if it has set some."""
+        nonlocal proved
+        if not f.normal > 0 or not getattr(c, limit) > 0:
+            return                                          # nothing is missed here
+        proved = True
+        lost = [field for field in stiff or ("ct",)*("ct" in fields) if not getattr(f, field)]
+        if not f.load and not f.elastic:
+            lost.append("load")
+        if not lost:
+            return
+        text = ("%s: force.%s %s 0, so %s; dem.law_hertz, law_linear and law_hysteretic set force.%s; a normal law of your own sets them "
+                "before it calls %s, and dem.law_load sets the load (docs/python_how_to.md)" % (
+                    name, " and ".join(lost), "is" if len(lost) == 1 else "are", "it gives no force" if limit == "friction" else
+                    "it gives no moment", ", ".join(fields), name))
+        if stiff and lost == stiff + ["load"] and not ("ct" in fields and f.ct):
+            raise ArgumentError(text)
+        warnings.warn(text, stacklevel=4)
+
+    def renew():
+        nonlocal proved
+        proved = not fields
+    _PROOFS.append(renew)
+
+    def call(c, memory, f):
+        if type(c) is not contact or type(memory) is not passed or type(f) is not ContactForce:
+            check(c, memory, f)
+        if not proved:
+            prove(c, f)
+        entry(c, memory, f)
+    contact = _read(Contact)
     return call
 
 
@@ -457,6 +514,104 @@ def _checked(entry, name, names, kinds):
     return call
 
 
+def _near(name, names):
+    """What a misspelled name may have meant, as the end of an error message."""
+    import difflib
+
+    names = list(names)
+    found = difflib.get_close_matches(str(name), names, 3) or [one for one in names if len(str(name)) > 2 and str(name) in one][:3]
+    if found:
+        return "; did you mean %s?" % " or ".join(found)
+    return "; it has %s" % ", ".join(names) if names else "; it has none"
+
+
+def _unbound(function, where, values, fields):
+    """The exception for arguments that do not fit the parameters of a function; None if they fit."""
+    import inspect
+
+    all_of = [p for p in inspect.signature(function).parameters.values() if p.name not in ("self", "cls")]
+    if any(p.kind is p.VAR_POSITIONAL for p in all_of):     # a constructor of a struct, which checks them itself
+        return None
+    plain = [p.name for p in all_of if p.kind is p.POSITIONAL_OR_KEYWORD]
+    named = [p.name for p in all_of if p.kind is p.KEYWORD_ONLY]
+    for name in fields:
+        if name not in plain + named:
+            return ArgumentTypeError("%s: there is no argument %r%s" % (where, name, _near(name, plain + named)))
+    if len(values) > len(plain):
+        if named:
+            some = ", ".join("%s=..." % name for name in named[:3])
+            return ArgumentTypeError("%s: %s %s given without a name; %s: %s(%s)" % (
+                where, ", ".join(map(_short, values[len(plain):])), "is" if len(values) == len(plain) + 1 else "are", "these arguments must have names" if plain == [] else
+                "arguments behind %s must have names" % plain[-1], where, ", ".join(plain + [some] + ["..."]*(len(named) > 3))))
+        return ArgumentTypeError("%s: %d argument%s given, %s; %s(%s)" % (
+            where, len(values), " is" if len(values) == 1 else "s are", "it takes %s%d" % ("at most " if any(p.default is not p.empty for p in all_of) else "", len(plain))
+            if plain else "it takes none", where, ", ".join(plain)))
+    twice = [name for name in plain[:len(values)] if name in fields]
+    if twice:
+        return ArgumentTypeError("%s: %s is given twice" % (where, twice[0]))
+    lost = [p.name for p in all_of if p.default is p.empty and p.name not in fields and p.name not in plain[:len(values)]]
+    if lost:
+        return ArgumentTypeError("%s: %s %s missing; %s(%s)" % (where, ", ".join(lost), "is" if len(lost) == 1 else "are", where,
+                                                               ", ".join(plain + ["%s=..." % name for name in named if name in lost])))
+    return None
+
+
+def _short(value):
+    """A value as an error message shows it, without its type."""
+    text = _given(value)
+    return text[:text.rindex(" (")] if text.endswith(" is given") and " (" in text else text.replace(" is given", "")
+
+
+def _binds(function, where, own):
+    """A function whose arguments that do not fit raise ArgumentTypeError. own: the first one is self."""
+    @functools.wraps(function)
+    def bind(*values, **fields):
+        try:
+            return function(*values, **fields)
+        except TypeError as error:
+            if error.__traceback__.tb_next is not None:     # of the function, not of its call
+                raise
+            found = _unbound(function, where if not own or "." not in where else "%s.%s" % (
+                getattr(values[0], "__name__", type(values[0]).__name__), function.__name__), values[own:], fields)
+        raise found or ArgumentTypeError("%s: the arguments do not fit" % where)
+    return bind
+
+
+def _binds_law(function, name):
+    """The same for a built-in law, without a call in between: laws in Python call them for each contact."""
+    library, key = _lib.__dict__, "dempy_" + name
+
+    @functools.wraps(function)
+    def bind(*values, **fields):
+        try:
+            return library[key](*values, **fields)
+        except TypeError:
+            found = _unbound(function, "dem." + name, values, fields)
+            if not found:
+                raise
+        except KeyError:                                    # the library is not loaded yet
+            return function(*values, **fields)
+        raise found
+    return bind
+
+
+def _bind_all(names):
+    """Gives the public functions and methods of the module the error messages of _binds."""
+    for name, thing in list(names.items()):
+        if getattr(thing, "__module__", "") != __name__ or name[0] == "_" or name != getattr(thing, "__name__", name):
+            continue
+        if isinstance(thing, types.FunctionType):
+            names[name] = _binds_law(thing, name) if name in _LAW_NEEDS else _binds(thing, "dem." + name, 0)
+        elif isinstance(thing, type):
+            for part, member in list(vars(thing).items()):
+                if isinstance(member, types.FunctionType) and (part[0] != "_" or part == "__init__" and not issubclass(
+                        thing, (Struct, ReplayBase, SlabsBase))):
+                    where = thing.__name__.replace("Base", "")
+                    setattr(thing, part, _binds(member, where if part == "__init__" else "%s.%s" % (where, part), 1))
+                elif isinstance(member, classmethod) and part[0] != "_" and part != "from_param":
+                    setattr(thing, part, classmethod(_binds(member.__func__, "%s.%s" % (thing.__name__, part), 1)))
+
+
 def _c(kind):
     return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
 
@@ -491,7 +646,7 @@ def _convert(value, kind, exact=True):
             raise ValueError("%d words are given, %d are wanted, one for each axis" % (len(items), kind.size))
         return kind.c(*[_number(item, kind.kind) for item in items])
     if isinstance(kind, type) and issubclass(kind, ctypes.Array):
-        if isinstance(value, kind):
+        if isinstance(value, (kind, kind._type_*kind._length_)):
             return value
         if value is None:
             return kind()
@@ -548,7 +703,7 @@ def _array(value, kind, width=1, count=None, null=False):
         array = [kind._made(item) for item in _items(value, "a list of %s" % kind.__name__)]
         array = (kind*len(array))(*array)
     else:
-        array = _reals(value, kind, width, wanted)
+        array = _reals(value, kind, width, wanted, count)
     if len(array) % width:
         raise ValueError("%d numbers are given, which is no multiple of %d; an array of shape %s is wanted" % (len(array), width, wanted))
     if count is not None and len(array) != count*width:
@@ -557,10 +712,21 @@ def _array(value, kind, width=1, count=None, null=False):
     return array
 
 
-def _reals(value, kind, width, wanted):
+def _remedy(shape, width, count):
+    """What makes an array of this shape fit, as the end of an error message."""
+    if width == 3 and shape[-1] == 4:                       # what world.bodies.positions returns
+        return "; leave out column 4: array[:, :3]"
+    if len(shape) == 2 and shape[0] == width and count in (None, shape[1]):
+        return "; transpose it"
+    return ""
+
+
+def _reals(value, kind, width, wanted, count):
     """Numbers as a C array."""
     if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
         raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted))
+    if isinstance(value, Array):
+        value = value.view
     try:
         view = memoryview(value)
     except (TypeError, ValueError):
@@ -573,7 +739,7 @@ def _reals(value, kind, width, wanted):
             raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted))
         if len(shape) > 1 and shape[-1] != width and not (0 in shape):
             raise ValueError("the shape %s is given, %s is wanted%s" % (
-                shape, wanted, "; transpose it" if len(shape) == 2 and shape[0] == width else ""))
+                shape, wanted, _remedy(shape, width, count)))
     if view and view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
         return (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
     if hasattr(value, "tolist"):
@@ -607,7 +773,8 @@ def _rows(value, numbers, kind, width, wanted, depth):
         _rows(item, numbers, kind, width, wanted, depth + 1)
     found = len(numbers) - begun
     if depth and not nested and found != width:
-        raise ValueError("a row has the shape (%d,), an array of shape %s is wanted" % (found, wanted))
+        raise ValueError("a row has the shape (%d,), an array of shape %s is wanted%s" % (
+            found, wanted, "; leave out number 4 of each row" if width == 3 and found == 4 else ""))
 
 
 def _array_of(value, kind, where, width=1, count=None, null=False):
@@ -625,12 +792,149 @@ def _view(pointer, kind, shape, owner, const):
     count = 1
     for length in shape:
         count *= length
+    if issubclass(kind, Struct):
+        array = _row(kind, count).from_address(ctypes.addressof(pointer.contents)) if count else _row(kind, 0)()
+        array.owner, array._call = owner, owner._call
+        return array
     array = (kind*count).from_address(ctypes.addressof(pointer.contents)) if count else (kind*0)()
     array.owner = owner                                     # the world lives as long as the view
-    if issubclass(kind, Struct):
-        return array
     view = memoryview(array).cast("B").cast(array._type_._type_, *([list(shape)] if count else []))
-    return view.toreadonly() if const else view
+    return Array(view.toreadonly() if const else view)
+
+
+class Array:
+    """Numbers with one or two axes: a view of memory of the world, or a copy. len, indices and loops go by rows; array[i, j],
+    array[i], array[1:3], array[:, 2] and array[:, :3] are parts of it. numpy.asarray(array) views it, array.tolist() is a
+    list, array.view the memoryview."""
+    __slots__ = ("view",)
+
+    def __init__(self, view):
+        self.view = view if isinstance(view, memoryview) else memoryview(view)
+
+    def __getattr__(self, name):                            # shape, tolist, nbytes, ...
+        if name[:2] == "__":
+            raise AttributeError(name)
+        if name[0] != "_" and hasattr(memoryview, name):
+            return getattr(self.view, name)
+        raise NoFieldError("Array has no attribute %r; it has shape, tolist() and those of a memoryview; numpy.asarray(array) "
+                           "has more" % name)
+
+    @property
+    def shape(self):
+        """The lengths of the axes."""
+        return self.view.shape
+
+    def tolist(self):
+        """The numbers as a list, of lists if there are two axes."""
+        return self.view.tolist()
+
+    def tobytes(self):
+        """The numbers as bytes."""
+        return self.view.tobytes()
+
+    def __len__(self):
+        return len(self.view)
+
+    def _flat(self):
+        view = self.view
+        return view if view.ndim == 1 else view.cast("B").cast(view.format)
+
+    def __getitem__(self, index):
+        view = self.view
+        try:
+            if view.ndim == 1:
+                found = view[index[0] if type(index) is tuple and len(index) == 1 else index]
+                return Array(found) if type(found) is memoryview else found
+            if type(index) is tuple and len(index) == 2 and slice not in (type(index[0]), type(index[1])):
+                return view[index]
+            return self._part(*index if type(index) is tuple else (index,))
+        except TypeError:
+            raise ArgumentTypeError("array[...]: %s, numbers or slices are wanted, one for each of %d axes" % (
+                _given(index), view.ndim)) from None
+        except (IndexError, ValueError, NotImplementedError):
+            raise NoSuchError("array[...]: %s, the array has the shape %s" % (_given(index), view.shape)) from None
+
+    def _part(self, i, j=slice(None)):
+        """Rows, or a part of rows, or of columns, of an array with two axes."""
+        view, flat = self.view, self._flat()
+        count, width = view.shape
+        rows, columns = range(count)[i], range(width)[j]
+        if isinstance(rows, int):
+            return Array(flat[width*rows:width*rows + width][j])
+        if isinstance(columns, int):
+            return Array(flat[columns::width][i])
+        if rows.step == 1 and len(columns) == width and columns.step == 1 and len(rows):
+            return Array(flat[width*rows.start:width*rows.stop].cast("B").cast(view.format, [len(rows), width]))
+        part = memoryview(bytearray(len(rows)*len(columns)*view.itemsize)).cast(view.format)     # a copy
+        for k, row in enumerate(rows):
+            part[k*len(columns):(k + 1)*len(columns)] = flat[width*row:width*row + width][j]
+        return Array((part.cast("B").cast(view.format, [len(rows), len(columns)]) if len(part) else part).toreadonly())
+
+    def __setitem__(self, index, value):
+        view = self.view
+        if view.readonly:
+            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change, and "
+                                    "world.bodies.positions = array sets all positions")
+        part = self[index]
+        try:
+            if not isinstance(part, Array):
+                view[index] = value
+                return
+            items, target = _items(value, "%d numbers" % len(part)), part.view
+            if target.ndim != 1 or target.readonly or len(items) != len(target):
+                raise ValueError("%s; one number or one row can be set" % _given(value))
+            for i, item in enumerate(items):
+                target[i] = item
+        except (TypeError, ValueError) as error:
+            raise _named(error, "array[%s]" % (index,)) from None
+
+    def __iter__(self):
+        view = self.view
+        if view.ndim == 1:
+            return iter(view)
+        flat, width = self._flat(), view.shape[1]
+        return (Array(flat[k:k + width]) for k in range(0, len(flat), width))
+
+    def __eq__(self, other):
+        if isinstance(other, (Array, memoryview)):
+            return self.view == getattr(other, "view", other)
+        return self.tolist() == _plain(list(other)) if isinstance(other, (list, tuple)) else NotImplemented
+
+    __hash__ = None
+
+    def __repr__(self):
+        rows = [repr(row) for row in (self.view[:4].tolist() if self.view.ndim == 1 else [row.tolist() for row in self[:4]])]
+        return "Array([%s%s])" % (", ".join(rows), ", ... (%s)" % " x ".join(map(str, self.view.shape)) if len(self) > 4 else "")
+
+    @property
+    def __array_interface__(self):                          # numpy looks here first
+        view = self.view
+        if not view.c_contiguous:
+            raise AttributeError("__array_interface__")
+        return {"shape": view.shape, "typestr": _TYPESTRS[view.format], "data": view, "version": 3}
+
+    def __array__(self, dtype=None, copy=None):
+        import numpy
+        array = numpy.asarray(self.view)
+        if dtype is not None and dtype != array.dtype:
+            return array.astype(dtype)
+        return array.copy() if copy else array
+
+    def __buffer__(self, flags):
+        return memoryview(self.view)
+
+    def __reduce_ex__(self, _):
+        return _array_from, (self.view.format, self.view.shape, self.view.tobytes())
+
+
+_TYPESTRS = {kind._type_: "%s%s%d" % ("<" if sys.byteorder == "little" else ">", "f" if kind not in _LIMITS else "i" if _LIMITS[
+    kind][0] else "u", ctypes.sizeof(kind)) for kind in _NUMBERS}
+
+
+def _array_from(form, shape, data):
+    """An array that was pickled."""
+    view = memoryview(data).cast(form)
+    return Array(view.cast("B").cast(form, shape) if len(shape) > 1 and len(view) else view)
 
 
 def _plain(value):
@@ -639,9 +943,9 @@ def _plain(value):
         return tuple(value)
     if isinstance(value, Struct):
         return value.to_dict()
-    if isinstance(value, memoryview):
+    if isinstance(value, (memoryview, Array)):
         return value.tolist()
-    if isinstance(value, ctypes.Array):
+    if isinstance(value, (ctypes.Array, list, tuple)):
         return [_plain(item) for item in value]
     return value
 
@@ -699,10 +1003,18 @@ class Struct(ctypes.Structure):
                 raise ArgumentTypeError("%s: %s is given twice" % (type(self).__name__, both.pop()))
             self._put(dict(zip(self.kinds, values), **fields))
 
-    def _put(self, fields):
+    @classmethod
+    def _of_call(cls, where, fields):
+        """A struct of the arguments of a call, whose name error messages have."""
+        made = cls()
+        made._put(fields, where + ": ")
+        return made
+
+    def _put(self, fields, where=None):
+        where = where or type(self).__name__ + "."
         for name in fields:
             if name not in self.kinds:
-                raise ArgumentTypeError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+                raise ArgumentTypeError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
         sizes, pointers = {}, False
         for name, value in fields.items():
             if name in self.counts:
@@ -745,7 +1057,7 @@ class Struct(ctypes.Structure):
                 else:
                     _set(self, name, _convert(value, kind))
             except (TypeError, ValueError, OverflowError) as error:
-                raise _named(error, "%s.%s" % (type(self).__name__, name)) from None
+                raise _named(error, where + name) from None
             if isinstance(value, Struct):
                 self._keep(name, value, (name,))
             elif isinstance(value, (list, tuple)):
@@ -753,16 +1065,16 @@ class Struct(ctypes.Structure):
                     if isinstance(item, Struct):
                         self._keep("%s[%d]" % (name, i), item, (name, i))
         for length, arrays in self.counts.items():          # a length follows from its arrays
-            self._length(length, arrays, sizes, fields, pointers)
+            self._length(length, arrays, sizes, fields, pointers, where)
 
-    def _length(self, length, arrays, sizes, fields, pointers):
+    def _length(self, length, arrays, sizes, fields, pointers, where):
         """Sets the length that arrays have in common."""
         given = fields.get(length)
         if given is not None:
             try:
                 given = _number(given, ctypes.c_int)
             except (TypeError, OverflowError) as error:
-                raise _named(error, "%s.%s" % (type(self).__name__, length)) from None
+                raise _named(error, where + length) from None
         found = [field for field, _ in arrays if field in sizes]
         if found:
             count = sizes[found[0]]
@@ -772,18 +1084,18 @@ class Struct(ctypes.Structure):
                     others[field] = getattr(self, length)
             if others:
                 field, size = others.popitem()
-                raise ArgumentError("%s.%s has %d element%s, %s has %d; both must have as many" % (
-                    type(self).__name__, field, size, "s"*(size != 1), found[0], count))
+                raise ArgumentError("%s%s has %d element%s, %s has %d; both must have as many" % (
+                    where, field, size, "s"*(size != 1), found[0], count))
             if given and given != count:
-                raise ArgumentError("%s.%s is %d, but %s has %d element%s; leave it out, it follows from the array" % (
-                    type(self).__name__, length, given, found[0], count, "s"*(count != 1)))
+                raise ArgumentError("%s%s is %d, but %s has %d element%s; leave it out, it follows from the array" % (
+                    where, length, given, found[0], count, "s"*(count != 1)))
             _set(self, length, count)
         elif pointers and given is not None:
             _set(self, length, given)
         elif given:
             if given != getattr(self, length):
-                raise ArgumentError("%s.%s is %d, but %s has no elements; leave it out, it follows from the array" % (
-                    type(self).__name__, length, given, arrays[0][0]))
+                raise ArgumentError("%s%s is %d, but %s has no elements; leave it out, it follows from the array" % (
+                    where, length, given, arrays[0][0]))
         elif any(field in fields for field, _ in arrays[:1]) and not pointers:
             _set(self, length, 0)
 
@@ -805,12 +1117,11 @@ class Struct(ctypes.Structure):
             if name[:1] == "_":
                 _set(self, name, value)
                 return
-            raise FieldError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+            raise FieldError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
         base = self
         while base is not None:
             if getattr(base, "_call", None):
-                raise FieldError("%s.%s: this struct is a copy, whose change would have no effect; %s" % (
-                    type(self).__name__, name, base._call))
+                _changed(self, "%s.%s" % (type(self).__name__, name))
             base = getattr(base, "_b_base_", None)
         if kind is ctypes.c_double and type(value) is float:
             _set(self, name, value)
@@ -872,7 +1183,7 @@ class Struct(ctypes.Structure):
     def __getitem__(self, index):
         if isinstance(index, str):
             if index not in self.kinds:
-                raise ArgumentError("%s has no field %r; it has %s" % (type(self).__name__, index, ", ".join(self.kinds)))
+                raise ArgumentError("%s has no field %r%s" % (type(self).__name__, index, _near(index, self.kinds)))
             return getattr(self, index)
         try:
             return tuple(self)[index]
@@ -891,7 +1202,7 @@ class Struct(ctypes.Structure):
         return {name: _plain(getattr(self, name)) for name, kind in self.kinds.items() if not _raw(kind)}
 
     def __eq__(self, other):
-        if isinstance(other, Struct) and type(other) is not type(self) and not (self.numbers and other.numbers):
+        if isinstance(other, Struct) and (other.plain or type(other)) is not (self.plain or type(self)) and not (self.numbers and other.numbers):
             return False
         if not isinstance(other, (Struct, tuple, list)):
             return NotImplemented
@@ -902,19 +1213,20 @@ class Struct(ctypes.Structure):
     __hash__ = None
 
     def __reduce_ex__(self, _):
+        own = self.plain or type(self)
         arrays = {name: data for name, data in ((name, _array_bytes(name, kind, self)) for name, kind in self.kinds.items()
                                                 if isinstance(kind, View)) if data is not None}
-        raw, c = {}, type(self).from_buffer_copy(self)      # pointers mean nothing elsewhere
+        raw, c = {}, own.from_buffer_copy(self)             # pointers mean nothing elsewhere
         for (name, kind), field in zip(self._fields_, self.kinds):
             if isinstance(self.kinds[field], (View, Function)) or kind is ctypes.c_char_p or kind is ctypes.c_void_p or issubclass(
                     kind, ctypes._Pointer):
                 if kind is ctypes.c_char_p and getattr(self, name) is not None:
                     raw[name] = getattr(self, name)
                 ctypes.memset(ctypes.addressof(c) + getattr(type(self), name).offset, 0, ctypes.sizeof(kind))
-        return _struct_from, (type(self), bytes(c), arrays, dict(self._functions or {}), raw)
+        return _struct_from, (own, bytes(c), arrays, dict(self._functions or {}), raw)
 
     def __copy__(self):
-        copy = type(self).from_buffer_copy(self)            # its arrays are those of the original
+        copy = (self.plain or type(self)).from_buffer_copy(self)    # its arrays are those of the original
         copy.__dict__.update(_functions=dict(self._functions or {}), _of=self._of, _ids=self._ids, _extra=(self._extra, self._objects))
         return copy
 
@@ -926,7 +1238,7 @@ class Struct(ctypes.Structure):
         shown = []
         for name in self.kinds:
             value = getattr(self, name)
-            if isinstance(value, memoryview):
+            if isinstance(value, Array):
                 value = "<%s>" % " x ".join(map(str, value.shape))
             elif isinstance(value, ctypes.Array):
                 value = list(value)
@@ -936,6 +1248,24 @@ class Struct(ctypes.Structure):
 
 
 Struct.whole = False            # a sequence must have all fields
+Struct.plain = None             # of the class of a struct that a function may only read: the class without that
+
+
+@functools.lru_cache(None)
+def _read(kind):
+    """The class of a struct that a function of yours receives and may only read."""
+    return type(kind.__name__, (kind,), {"_call": "a function may only read it", "plain": kind, "__module__": kind.__module__,
+                                         "__doc__": kind.__doc__})
+
+
+def _changed(base, what):
+    """Refuses to change a part of a struct that a call has returned, or that a function may only read."""
+    while base is not None:
+        call = getattr(base, "_call", None)
+        if call:
+            raise FieldError("%s cannot be set; %s" % (what, call) if getattr(base, "plain", None) else
+                             "%s: this is a copy, whose change would have no effect; %s" % (what, call))
+        base = getattr(base, "_b_base_", None)
 
 
 def _raw(kind):
@@ -955,6 +1285,90 @@ def _same(a, b):
         return bool(a == b)
     except ValueError:          # arrays of numpy
         return False
+
+
+class Row:
+    """An array inside of a struct, and what functions return as one: a sequence of numbers, or of structs. Numbers take part
+    in sums and products; two rows are equal if their numbers are."""
+    _call = None
+
+    def __setitem__(self, index, value):
+        _changed(self, "array[%s]" % (index,))
+        try:
+            ctypes.Array.__setitem__(self, index, value)
+        except (TypeError, ValueError, IndexError) as error:
+            raise self._wrong(index, error) from None
+
+    def __getitem__(self, index):
+        try:
+            return ctypes.Array.__getitem__(self, index)
+        except (TypeError, IndexError) as error:
+            raise self._wrong(index, error) from None
+
+    def _wrong(self, index, error):
+        if isinstance(error, IndexError):
+            return NoSuchError("%s is given, the array has the numbers 0 to %d" % (index, len(self) - 1))
+        return ArgumentTypeError("array[%s]: %s" % (index, error))
+
+    def __iter__(self):
+        return iter(ctypes.Array.__getitem__(self, slice(0, len(self))))
+
+    def __repr__(self):
+        return "[%s%s]" % (", ".join(map(repr, self[:24])), ", ... (%d in all)" % len(self) if len(self) > 24 else "")
+
+    def __eq__(self, other):
+        return len(self) == len(other) and all(map(_same, self, other)) if isinstance(other, (ctypes.Array, list, tuple)) else NotImplemented
+
+    __hash__ = None
+
+    def __reduce_ex__(self, _):
+        if issubclass(self._type_, ctypes._Pointer):
+            raise ArgumentTypeError("an array of pointers is not pickled; return its numbers")
+        kind, lengths = self._type_, [len(self)]
+        while issubclass(kind, Row):
+            kind, lengths = kind._type_, lengths + [kind._length_]
+        return _row_from, (kind, lengths, bytes(self))
+
+    def __copy__(self):
+        return _row(self._type_, len(self)).from_buffer_copy(self)
+
+    def __deepcopy__(self, memo):
+        return self.__copy__()
+
+    def _with_each(self, other, function, swap=False):
+        if self._type_ not in _NUMBERS:
+            return NotImplemented
+        if isinstance(other, (int, float)) or not hasattr(other, "__len__") and hasattr(other, "__float__"):
+            other = (other,)*len(self)
+        elif not isinstance(other, (Row, Numbers, tuple, list)) or len(other) != len(self):
+            return NotImplemented                           # an array of numpy answers itself
+        return _row(Real if self._type_ in _LIMITS else self._type_, len(self))(*[
+            function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
+
+
+@functools.lru_cache(1024)
+def _row(kind, length):
+    """The type of an array of this length."""
+    return type("Row", (Row, ctypes.Array), {"_type_": kind, "_length_": length, "__module__": __name__})
+
+
+@functools.lru_cache(1024)
+def _row_read(kind, length):
+    """The type of an array that a function receives and may only read."""
+    return type("Row", (_row(kind, length),), {"_call": "a function may only read it", "plain": True, "__module__": __name__})
+
+
+def _row_from(kind, lengths, data):
+    """An array that was pickled."""
+    for length in reversed(lengths):
+        kind = _row(kind, length)
+    return kind.from_buffer_copy(data)
+
+
+def _fixed(array):
+    """An array of structs that a call has filled, whose fields are not set."""
+    array._call = "dem.h computes it"
+    return array
 
 
 class Numbers(Struct):
@@ -982,7 +1396,7 @@ class Numbers(Struct):
     def _with_each(self, other, function, swap=False):
         if isinstance(other, (int, float)) or not hasattr(other, "__len__") and hasattr(other, "__float__"):
             other = (other,)*len(self)
-        elif not isinstance(other, (Numbers, tuple, list)) or len(other) != len(self):
+        elif not isinstance(other, (Numbers, Row, tuple, list)) or len(other) != len(self):
             return NotImplemented                           # an array of numpy answers itself
         return type(self)(*[function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
 
@@ -1022,6 +1436,10 @@ class Numbers(Struct):
         return sum(a*b for a, b in zip(self, type(self)._made(other)))
 
 
+for _name in "add radd sub rsub mul rmul truediv rtruediv abs".split():
+    setattr(Row, "__%s__" % _name, getattr(Numbers, "__%s__" % _name))
+
+
 class Vector(Numbers):
     """What a Vec3 has beside its fields: v + w, 2*v, v/2, abs(v) (its length), v.dot(w), v.cross(w)."""
 
@@ -1039,16 +1457,6 @@ def _field(name, kind, doc):
         value = getattr(self, raw)
         if isinstance(kind, Function):
             return (self._functions or {}).get((name,)) or (value if value else None)
-        if isinstance(kind, View):
-            if kind.one:
-                return value[0] if value else None
-            shape = []
-            for axis in kind.shape:
-                length = getattr(self, axis) if isinstance(axis, str) else axis
-                if isinstance(length, ctypes.Array):        # cells along three axes
-                    length = length[0]*length[1]*length[2]
-                shape.append(length)
-            return _view(value, kind.kind, shape, self, kind.const) if shape else value
         if isinstance(kind, Choices):
             return tuple(kind.kind(item) for item in value)
         if isinstance(kind, Text):
@@ -1059,6 +1467,18 @@ def _field(name, kind, doc):
             return kind(value)
         except ValueError:
             return value
+
+    def view(self):
+        value = getattr(self, raw)
+        if kind.one:
+            return value[0] if value else None
+        shape = []
+        for axis in kind.shape:
+            length = getattr(self, axis) if type(axis) is str else axis
+            if isinstance(length, Row):                     # cells along three axes
+                length = length[0]*length[1]*length[2]
+            shape.append(length)
+        return _view(value, kind.kind, shape, self, kind.const) if shape else value
 
     def put(self, value):
         if isinstance(kind, Function):
@@ -1078,7 +1498,7 @@ def _field(name, kind, doc):
             self.__dict__["_functions"] = functions
         else:
             _set(self, raw, _convert(value, kind))
-    return property(get, put, doc=doc)
+    return property(view if isinstance(kind, View) else get, put, doc=doc)
 
 
 def _compiled(function):
@@ -1096,11 +1516,14 @@ def _compiled(function):
 
 def _struct(cls):
     """Gives a subclass of Struct the fields of its rows."""
-    fields, docs = [], []
+    fields, docs, kinds = [], [], {}
     cls._functions_ = {}
     for name, kind, doc in cls.rows:
         if isinstance(kind, View) and not kind.shape and not kind.one:
             kind.shape = tuple(length for length, arrays in cls.counts.items() if name in [array for array, _ in arrays])
+        if isinstance(kind, type) and issubclass(kind, ctypes.Array):
+            kind = _row(kind._type_, kind._length_)
+        kinds[name] = kind
         special = isinstance(kind, (View, Text, Function, Choices)) or kind is str or issubclass(kind, enum.IntEnum)
         c = ctypes.c_char_p if kind is str else _c(kind)
         fields.append(("_" + name if special else name, c))
@@ -1110,13 +1533,13 @@ def _struct(cls):
             setattr(cls, name, _field(name, kind, doc))
         if doc:
             docs.append("%s: %s" % (name, doc))
-    cls.kinds = {name: kind for name, kind, _ in cls.rows}
+    cls.kinds = kinds
     cls.counted = {field for arrays in cls.counts.values() for field, _ in arrays if not isinstance(cls.kinds[field], View)}
     cls.numbers = issubclass(cls, Numbers)
     cls.whole = cls.__name__ == "Box"
     cls._fields_ = fields
     if docs:
-        cls.__doc__ = (cls.__doc__ or "") + "\n\n" + "\n".join(docs)
+        cls.__doc__ = "\n".join(line.strip() for line in (cls.__doc__ or "").split("\n")).strip() + "\n\n" + "\n".join(docs)
     return cls
 
 
@@ -1134,9 +1557,20 @@ class Id(Struct):
 
     def __setattr__(self, name, value):
         if name[:1] != "_":
-            raise FieldError("%s.%s: an id does not change, and its object has %s" % (type(self).__name__, name, ", ".join(
-                word for word in dir(type(self)) if word[0] != "_" and word not in dir(Id))))
+            kind = type(self)
+            one = kind.__name__.lower()
+            if hasattr(kind, name + "_set"):
+                call = "call %s.%s_set" % (one, name)
+            elif hasattr(kind, "set") and name in kind.set.__wrapped__.__code__.co_varnames:
+                call = "write %s.set(%s=...)" % (one, name)
+            else:
+                call = "an id does not change, and its object has %s" % ", ".join(
+                    word for word in dir(kind) if word[0] != "_" and word not in dir(Id))
+            raise FieldError("%s.%s cannot be set; %s" % (kind.__name__, name, call))
         _set(self, name, value)
+
+    def __getattr__(self, name):
+        raise _no_attribute(self, name)
 
     def of(self, world):
         """The same id, as a part of another world: of a copy that a function of yours sees, or of a checkpoint."""
@@ -1206,6 +1640,19 @@ def _kept(name):
                          "copy.copy(%s), or the numbers that you need" % (name, name))
 
 
+def _beyond(error, kind, **arrays):
+    """The exception of a function that used a number beyond the arrays that it receives, in the place of that of ctypes."""
+    if str(error) != "invalid index":
+        return error
+    what = {"memory": ("contact history", "World(law_memory=...)"), "values": ("row of columns", "output(columns=...)"),
+            "reals": ("numbers of the body", "World(body_reals=...)"), "rates": ("rates", "World(body_reals=...)")}
+    words = ["its %s has %s (%s)" % (what[name][0], "the numbers 0 to %d" % (kind_._length_ - 1) if kind_._length_ else "no numbers",
+                                     what[name][1]) for name, kind_ in arrays.items()]
+    made = NoSuchError("your function (%s) used a number beyond an array: %s" % (kind, "; ".join(words)))
+    made.__cause__ = error
+    return made.with_traceback(error.__traceback__)
+
+
 def _returned(value, kind):
     """The exception of a function that returns what it must not."""
     return ArgumentTypeError("your function (%s) returned %s, but what it returns has no effect; it sets the fields of its "
@@ -1221,6 +1668,40 @@ def _real_from(value, kind):
             kind, str(error).replace("is given", "was returned"))) from None
 
 
+def _no_attribute(thing, name):
+    """The exception for an attribute that an id does not have. It names the struct that has such a field."""
+    kind = type(thing)
+    if name[:1] == "_" or name in ("shape", "dtype", "tolist"):     # what numpy and others look for
+        return AttributeError("%s has no attribute %r" % (kind.__name__, name))
+    one, parts = kind.__name__.lower(), _PARTS.get(kind.__name__, {})
+    found = ["%s.%s.%s" % (one, part, name) for part in sorted(parts, key=lambda part: part not in ("state", "desc"))
+             if name in parts[part].kinds]
+    words = [word for word in dir(kind) if word[0] != "_" and word not in dir(Struct)]
+    if name + "s" in words:
+        found.insert(0, "%s.%ss" % (one, name))
+    if found:
+        return NoFieldError("%s has no attribute %r; read %s" % (kind.__name__, name, " or ".join(found[:3])))
+    import difflib
+
+    fields = {field: "%s.%s" % (part, field) for part in sorted(parts) for field in parts[part].kinds}
+    near = difflib.get_close_matches(name, words + list(fields), 2)
+    return NoFieldError("%s has no attribute %r%s" % (kind.__name__, name, "; did you mean %s?" % " or ".join(
+        "%s.%s" % (one, fields.get(word, word)) for word in near) if near else _near(name, words)))
+
+
+def _no_groups(name):
+    return ArgumentError("World.group: %s, but this world has no groups; name them when you make it: dem.World(groups=%r)" % (
+        _given(name), name))
+
+
+def _in_python(text):
+    """An error message of dem.h, with the functions that it recommends as they are called in Python."""
+    head, colon, rest = text.partition(": ")
+    names = {function.replace("dempy_", "dem_"): name[0].lower() + name[1:] if "." in name else "dem." + name
+             for function, _, _, name, _ in _FUNCTIONS if not function.startswith(("dempy_rows", "dempy_ids", "dempy_put"))}
+    return head + colon + re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+
+
 class Handle:
     """A world, a replay or slabs: memory that the library owns."""
     _at = _context = None
@@ -1230,7 +1711,8 @@ class Handle:
         """The pointer, for a call."""
         at = self._at
         if at is None:
-            raise ArgumentError("%s.%s: this %s is closed" % (type(self).__name__, sys._getframe(1).f_code.co_name,
+            frame = sys._getframe(1)                        # of a method, perhaps of an id
+            raise ArgumentError("%s.%s: this %s is closed" % (type(frame.f_locals.get("self", self)).__name__, frame.f_code.co_name,
                                                              type(self).__name__.lower()))
         return at
 
@@ -1252,7 +1734,7 @@ class Handle:
         return ""
 
     def _raise(self, kind):
-        text = self._text() or "no message"
+        text = _in_python(self._text() or "no message")
         if kind is Error:                                   # a null id
             kind = (MemoryError if ": out of memory" in text else FileError if ": cannot write" in text or ": cannot read" in text
                     else ArgumentError)
@@ -1265,8 +1747,7 @@ class Handle:
         """Raises the exception of a function of yours, or that of a result other than OK."""
         if self._context and self._context.raised is not None:
             error, self._context.raised = self._context.raised, None
-            if result and hasattr(error, "add_note"):
-                error.add_note("dem.h: " + self._text())
+            self._text()                                    # a consequence: read, so that no run quotes it later
             raise error
         if result:
             self._raise(_ERRORS[result])
@@ -1331,7 +1812,7 @@ class Handle:
             if added == 0 and (count or text.startswith(name)):
                 self._raise(Error)
             if added:
-                warnings.warn(text, stacklevel=3)
+                warnings.warn(_in_python(text), stacklevel=4)
         return added
 
     def _bound(self, struct, key=None):
@@ -1356,16 +1837,17 @@ class Handle:
         self._context.kept[key or len(self._context.kept)] = made, struct
         return copy
 
-    def _callback(self, kind, function):
-        """A C function of a Python function, for one call."""
+    def _callback(self, kind, function, where):
+        """A C function of a Python function, for one call. where: the call and the argument."""
+        if function is _go_on and self._context.go_on:
+            return self._context.go_on
         if function is None:
             return kind.c()
         if not callable(function) or isinstance(function, type):
-            raise ArgumentTypeError("%s.%s: %s, a function is wanted" % (type(self).__name__, sys._getframe(1).f_code.co_name,
-                                                                        _given(function)))
+            raise ArgumentTypeError("%s: %s, a function is wanted%s" % (where, _given(function), "; world.run(1, dem.progress_print) prints "
+                                                                        "the progress" if where.endswith(": progress") else ""))
         if function is _go_on:
-            if not self._context.go_on:
-                self._context.go_on = kind.wrap(_go_on, self._context, None)
+            self._context.go_on = kind.wrap(_go_on, self._context, None)
             return self._context.go_on
         if isinstance(function, ctypes._CFuncPtr):
             return ctypes.cast(function, kind.c)
@@ -1505,12 +1987,23 @@ class WorldBase(Handle):
                 if whole:
                     whole(body, id, time, sum, torque)
             desc._functions["body_force",] = both
+        for name in ("groups", "body_reals", "law_memory_names"):
+            words = (getattr(desc, name) or "").split()
+            twice = [word for i, word in enumerate(words) if word in words[:i]]
+            if twice:
+                raise ArgumentError("World: %s: %r is given twice; names must differ" % (name, twice[0]))
         self._context.memory, self._context.vectors = desc.law_memory, desc.law_vectors
         self._context.reals = len((desc.body_reals or "").split())
+        if "law" in functions:
+            for renew in _PROOFS:
+                renew()
         bound = self._bound(desc, "desc")
         at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
         if not at:
-            raise ArgumentError((_lib.dem_world_create_error_get(bound) or b"").decode())
+            text = (_lib.dem_world_create_error_get(bound) or b"").decode()
+            name = text.partition(": ")[2].partition(" ")[0]
+            value = getattr(desc, name, None) if name in desc.kinds else None
+            raise ArgumentError(text + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
         self._memory = _Memory(at, self._context)
 
     @classmethod
@@ -1526,7 +2019,9 @@ class WorldBase(Handle):
     @property
     def gravity(self):
         """The acceleration of gravity, m/s2. An assignment calls gravity_set."""
-        return self.desc.gravity
+        desc = self.desc
+        desc.__dict__["_call"] = "write world.gravity = (x, y, z)"
+        return desc.gravity
 
     @gravity.setter
     def gravity(self, value):
@@ -1584,6 +2079,9 @@ class ReplayBase(Handle):
     def path(self):
         """The path of the file."""
         return self._path
+
+    def __repr__(self):
+        return "<Replay %s, %s>" % (self._path, "closed" if self._at is None else "open")
 
     def __del__(self):
         pass                                        # the world goes on recording
@@ -1669,12 +2167,29 @@ def tail(memory, first):
     return part
 
 
+@functools.lru_cache(None)
+def _rows_of(name):
+    """Of an array of all bodies: name of the pointer, type of its numbers, place in the struct, width (0: one axis)."""
+    kind = Bodies.kinds[name]
+    if not isinstance(kind, View):                          # groups
+        return name, ctypes.c_uint32, getattr(Bodies, name).offset, 0
+    return "_" + name, kind.kind, getattr(Bodies, "_" + name).offset, kind.shape[1] if len(kind.shape) > 1 else 0
+
+
+_SETTERS = {"reals": "call world.bodies_reals_set(array)", "groups": "call world.bodies_group_set(selection, group, member)",
+            "orientations": "call body.set(orientation=...) for each body", "masses": "a mass follows from the density of the material "
+            "and the radius; call body.radius_set(radius)"}
+_SETTERS.update(dict.fromkeys(("radius", "radii", "radiuses"), "call body.radius_set(radius) for each body"))
+_SETTERS.update((one, "write world.bodies.%s = array, or call body.set(%s=...) for one body" % (many, one)) for one, many in (
+    ("position", "positions"), ("velocity", "velocities"), ("spin", "spins")))
+
+
 class Rows:
     """The arrays of all bodies of a world. Row i belongs to the body world.bodies[i] in all of them, and keeps it while the
     world runs: rows are in the order of the slots of bodies, which is the order of adding. A body that is added after
     another one was removed may take its slot, and then its place.
 
-    Each use of an array is a copy of what the world has then, read-only: positions (N x 4: x, y, z, radius, m), velocities
+    Each use of an array is a copy of what the world has then, read-only, as an Array: positions (N x 4: x, y, z, radius, m), velocities
     (N x 4: x, y, z, 0, m/s), spins (rad/s), forces (N, without gravity), torques (N m), masses (kg), slots, materials,
     orientations (N x 4: w, x, y, z), shapes, reals (N x real_count), rates, groups. world.bodies_memory has the arrays of
     dem.h without a copy, in an order that changes while the world runs.
@@ -1699,31 +2214,27 @@ class Rows:
         return self._struct().real_count
 
     def _get(self, name):
-        world, kind = self._world, Bodies.kinds[name]
-        found = _lib.dem_bodies_get(world._c)
+        raw, item, offset, axis = _rows_of(name)
+        at = self._world._c
+        found = _lib.dem_bodies_get(at)
         count = found.count
-        if name == "groups":
-            pointer, item, shape = found.groups, ctypes.c_uint32, [count]
-        else:
-            pointer, item = getattr(found, "_" + name), kind.kind
-            shape = [count if axis == "count" else found.real_count if axis == "real_count" else axis for axis in kind.shape]
+        pointer = getattr(found, raw)
         if not pointer:
             return None
-        width = shape[1] if len(shape) > 1 else 1
-        array = (item*(count*width))()
+        width = found.real_count if axis == "real_count" else axis
+        array = (item*(count*(width or 1)))()
         if count:
             if "dempy_rows" in _lib.__dict__:
-                result = _lib.dempy_rows(world._at, getattr(Bodies, name if name == "groups" else "_" + name).offset,
-                                         width*ctypes.sizeof(item), count, ctypes.addressof(array))
+                result = _lib.dempy_rows(at, offset, (width or 1)*ctypes.sizeof(item), count, ctypes.addressof(array))
                 if result:
                     raise MemoryError("World.bodies.%s: out of memory" % name)
             else:
                 rows = sorted(range(count), key=found.slots.__getitem__)
+                width = width or 1
                 for i, row in enumerate(rows):
                     array[width*i:width*i + width] = pointer[width*row:width*row + width]
-        if not count:
-            return memoryview(array).cast("B").cast(item._type_).toreadonly()
-        return memoryview(array).cast("B").cast(item._type_, shape).toreadonly()
+        view = memoryview(array).cast("B")
+        return Array(view.cast(item._type_, (count, width) if axis and count else (count,)).toreadonly())
 
     def _all(self):
         """The ids of all bodies."""
@@ -1769,7 +2280,7 @@ class Rows:
             rows = self._get(name).tolist() if self.count else []
             for i, letter in enumerate(letters.split()):
                 columns[letter] = [row[i] for row in rows]
-        columns["mass"], columns["material"] = self._get("masses").tolist(), self._get("materials").tolist()
+        columns.update((name, self._get(array).tolist() if self.count else []) for name, array in (("mass", "masses"), ("material", "materials")))
         names = (self._world.desc.body_reals or "").split()
         rows = self._get("reals").tolist() if names and self.count else []
         columns.update((name, [row[i] for row in rows]) for i, name in enumerate(names))
@@ -1777,7 +2288,8 @@ class Rows:
 
     def __setattr__(self, name, value):
         if name not in ("positions", "velocities", "spins"):
-            raise FieldError("World.bodies.%s cannot be set; positions, velocities and spins can" % name)
+            raise FieldError("World.bodies.%s cannot be set; %s" % (name, _SETTERS.get(name) or "positions, velocities and spins can%s" % (
+                _near(name, ("positions", "velocities", "spins", "radii", "reals")) if name not in Bodies.kinds else "")))
         ids = self._all()
         array = _array_of(value, Real, "World.bodies.%s" % name, 3, len(ids))
         if "dempy_put" in _lib.__dict__:
@@ -1797,10 +2309,18 @@ class Structs:
     to_dict() as columns."""
 
     def __init__(self, array):
-        self._array = array
+        self._array = _fixed(array)
 
     def __len__(self):
         return len(self._array)
+
+    def __reduce_ex__(self, _):
+        return _structs_from, (self._array._type_, len(self), bytes(self._array))
+
+    def __eq__(self, other):
+        return len(self) == len(other) and all(map(_same, self, other)) if isinstance(other, (Structs, list, tuple)) else NotImplemented
+
+    __hash__ = None
 
     def __getitem__(self, index):
         try:
@@ -1833,6 +2353,11 @@ class Structs:
 
     def __repr__(self):
         return "<%d %s>" % (len(self), self._array._type_.__name__)
+
+
+def _structs_from(kind, count, data):
+    """Structs that were pickled."""
+    return Structs(_row(kind, count).from_buffer_copy(data) if count else _row(kind, 0)())
 
 
 def _row_property(name, doc):
@@ -1892,6 +2417,9 @@ class Page:
     def __init__(self, path, height=560):
         path = os.fsdecode(_text_of(path, "dem.Page: path"))
         self.path, self.height = path, height
+
+    def __repr__(self):
+        return "dem.Page(%r)" % self.path
 
     def _repr_html_(self):
         try:

@@ -9,7 +9,7 @@
     print(ball.state.position)
 
 make.py made this file from dem.h and base.py: change those, then `make python`. docs/python.md is the manual. The texts
-below are the comments of dem.h, which name C functions. Rules of names:
+below are the comments of dem.h with the names of Python. Rules of names:
 
     dem_world_step(world, 1)                world.step(1)           functions of a world are methods
     dem_sphere_add(world, ...)              world.sphere(...)       _add, _get, _open, _create are dropped
@@ -23,6 +23,7 @@ below are the comments of dem.h, which name C functions. Rules of names:
     DEM_ERROR_TIME_STEP                     raises dem.TimeStepError, whose text is the error message
     struct dem_motion                       dem.Motion, or keyword arguments: wall.motion_set(kind="rotating", ...)
 """
+import builtins
 import ctypes
 import enum
 import functools
@@ -34,6 +35,7 @@ import math
 import operator
 import os
 import platform
+import re
 import shutil
 import signal
 import subprocess
@@ -109,16 +111,27 @@ _LAW_NEEDS = {      # numbers of contact history that a built-in law needs, and 
     'law_roll_epsd': (3, 1),
     'law_twist': (1, 0),
 }
+_LAW_READS = {      # fields of the force that a friction or rolling law reads, which a normal law sets
+    'law_viscous': ('ct', 'load'),
+    'law_step': ('kt', 'ct', 'load'),
+    'law_spring': ('kt', 'ct', 'load'),
+    'law_mindlin': ('kt', 'kt_step', 'ct', 'load'),
+    'law_mindlin_rescaled': ('kt', 'kt_step', 'ct', 'load'),
+    'law_roll_step': ('load',),
+    'law_roll_constant': ('load',),
+    'law_roll_epsd': ('slope', 'slope_step', 'load'),
+    'law_twist': ('load',),
+}
 
 # ---- errors, one for each result ------------------------------------------------------------------
 
 
 class Result(enum.IntEnum):
-    """The result of a call. dem_world_error_get returns the message, dem_result_name_get the name."""
+    """The result of a call. World.error returns the message, dem.result_name the name."""
     OK = 0
     # a value is out of range, an id is invalid, or a call is not allowed here
     ERROR_ARGUMENT = 1
-    # the allocator returned null
+    # the allocator returned None
     ERROR_MEMORY = 2
     # a file cannot be opened, read, written or renamed
     ERROR_FILE = 3
@@ -128,7 +141,7 @@ class Result(enum.IntEnum):
     ERROR_TIME_STEP = 5
     # a state or force is not finite, an overlap is larger than a radius, or a motion gives an impossible pose
     ERROR_UNSTABLE = 6
-    # a function of yours stopped the run, dem_world_settle ran out of time, or a step with impulses exceeded the
+    # a function of yours stopped the run, World.settle ran out of time, or a step with impulses exceeded the
     # tolerance (unsolved_stops)
     ERROR_STOPPED = 7
 
@@ -220,7 +233,11 @@ class LoadError(Error, ImportError):
 
 
 class NoSuchError(ArgumentError, IndexError):
-    """There is no body of this number."""
+    """There is no body, element or row of this number."""
+
+
+class NoFieldError(ArgumentError, AttributeError):
+    """There is no field or attribute of this name."""
 # ---- the shared library ------------------------------------------------------------------------
 
 Real = ctypes.c_float if os.environ.get("DEM_REAL") == "float" else ctypes.c_double
@@ -541,6 +558,16 @@ def _chars(value, null=True):
     return value
 
 
+def _renamed(function, wrong, right):
+    """What a function returns. Its error messages begin with the name of the call that uses it."""
+    try:
+        return function()
+    except Error as error:
+        if str(error).startswith(wrong + ":"):
+            raise type(error)(right + str(error)[len(wrong):]) from None
+        raise
+
+
 def _text_of(value, where):
     """value as the bytes of a C text; None is refused."""
     try:
@@ -552,7 +579,7 @@ def _text_of(value, where):
 def _data_of(value, where):
     """value as bytes: of a text, or of a buffer."""
     try:
-        return value.encode() if isinstance(value, str) else bytes(memoryview(value))
+        return value.encode() if isinstance(value, str) else bytes(memoryview(value.view if isinstance(value, Array) else value))
     except TypeError:
         raise ArgumentTypeError("%s: %s, a text or bytes are wanted" % (where, _given(value))) from None
 
@@ -603,6 +630,11 @@ def _size_of(count, where):
 
 def _converter(kind, null):
     """A function that takes an argument of a call to its C type, or None if ctypes takes it as it is."""
+    if kind is ctypes.c_double:
+        return lambda value: value if type(value) is float else _number(value, kind)
+    if kind in _LIMITS:
+        low, high = _LIMITS[kind]
+        return lambda value: value if type(value) is int and low <= value <= high else _number(value, kind)
     if kind in _NUMBERS:
         return lambda value: _number(value, kind)
     if isinstance(kind, type) and issubclass(kind, Id):
@@ -622,13 +654,18 @@ def _converter(kind, null):
     return None
 
 
+_PROOFS = []                    # what makes the built-in laws check again that the normal law has set what they read
+
+
 def _law_checked(entry, name, needs):
     """A built-in law, with its arguments checked. needs: numbers of contact history, and vectors among them."""
     numbers, vectors = needs
+    passed = object if numbers else type(None)              # the type of a contact history that has passed
 
-    def call(contact, memory, force):
-        if type(contact) is not Contact or type(force) is not ContactForce:
-            wrong, kind = (contact, Contact) if type(contact) is not Contact else (force, ContactForce)
+    def check(c, memory, f):
+        nonlocal passed
+        if type(c) is not Contact and type(c) is not _read(Contact) or type(f) is not ContactForce:
+            wrong, kind = (f, ContactForce) if type(c) in (Contact, _read(Contact)) else (c, Contact)
             raise ArgumentTypeError("%s: %s: %s, a %s is wanted" % (name, "c" if kind is Contact else "f", _given(wrong), kind.__name__))
         if numbers or memory is not None:
             if not isinstance(memory, ctypes.Array) or memory._type_ is not Real:
@@ -642,7 +679,44 @@ def _law_checked(entry, name, needs):
                 raise ArgumentError("%s: memory: the first three numbers of its contact history are a vector, which law_vectors "
                                     "does not count; make the world with law_vectors=1 or more, and give vectors the first places"
                                     % name)
-        entry(contact, memory, force)
+            passed = type(memory)
+
+    fields = _LAW_READS.get(name[4:], ())
+    proved = not fields
+    stiff = [field for field in fields if field not in ("ct", "load")]
+    limit = "spinning_friction" if "twist" in name else "rolling_friction" if "roll" in name else "friction"
+
+    def prove(c, f):
+        """Raises if the normal law in front of this one has set no field that this law reads; warns if it has set some."""
+        nonlocal proved
+        if not f.normal > 0 or not getattr(c, limit) > 0:
+            return                                          # nothing is missed here
+        proved = True
+        lost = [field for field in stiff or ("ct",)*("ct" in fields) if not getattr(f, field)]
+        if not f.load and not f.elastic:
+            lost.append("load")
+        if not lost:
+            return
+        text = ("%s: force.%s %s 0, so %s; dem.law_hertz, law_linear and law_hysteretic set force.%s; a normal law of your own sets them "
+                "before it calls %s, and dem.law_load sets the load (docs/python_how_to.md)" % (
+                    name, " and ".join(lost), "is" if len(lost) == 1 else "are", "it gives no force" if limit == "friction" else
+                    "it gives no moment", ", ".join(fields), name))
+        if stiff and lost == stiff + ["load"] and not ("ct" in fields and f.ct):
+            raise ArgumentError(text)
+        warnings.warn(text, stacklevel=4)
+
+    def renew():
+        nonlocal proved
+        proved = not fields
+    _PROOFS.append(renew)
+
+    def call(c, memory, f):
+        if type(c) is not contact or type(memory) is not passed or type(f) is not ContactForce:
+            check(c, memory, f)
+        if not proved:
+            prove(c, f)
+        entry(c, memory, f)
+    contact = _read(Contact)
     return call
 
 
@@ -680,6 +754,104 @@ def _checked(entry, name, names, kinds):
     return call
 
 
+def _near(name, names):
+    """What a misspelled name may have meant, as the end of an error message."""
+    import difflib
+
+    names = list(names)
+    found = difflib.get_close_matches(str(name), names, 3) or [one for one in names if len(str(name)) > 2 and str(name) in one][:3]
+    if found:
+        return "; did you mean %s?" % " or ".join(found)
+    return "; it has %s" % ", ".join(names) if names else "; it has none"
+
+
+def _unbound(function, where, values, fields):
+    """The exception for arguments that do not fit the parameters of a function; None if they fit."""
+    import inspect
+
+    all_of = [p for p in inspect.signature(function).parameters.values() if p.name not in ("self", "cls")]
+    if any(p.kind is p.VAR_POSITIONAL for p in all_of):     # a constructor of a struct, which checks them itself
+        return None
+    plain = [p.name for p in all_of if p.kind is p.POSITIONAL_OR_KEYWORD]
+    named = [p.name for p in all_of if p.kind is p.KEYWORD_ONLY]
+    for name in fields:
+        if name not in plain + named:
+            return ArgumentTypeError("%s: there is no argument %r%s" % (where, name, _near(name, plain + named)))
+    if len(values) > len(plain):
+        if named:
+            some = ", ".join("%s=..." % name for name in named[:3])
+            return ArgumentTypeError("%s: %s %s given without a name; %s: %s(%s)" % (
+                where, ", ".join(map(_short, values[len(plain):])), "is" if len(values) == len(plain) + 1 else "are", "these arguments must have names" if plain == [] else
+                "arguments behind %s must have names" % plain[-1], where, ", ".join(plain + [some] + ["..."]*(len(named) > 3))))
+        return ArgumentTypeError("%s: %d argument%s given, %s; %s(%s)" % (
+            where, len(values), " is" if len(values) == 1 else "s are", "it takes %s%d" % ("at most " if any(p.default is not p.empty for p in all_of) else "", len(plain))
+            if plain else "it takes none", where, ", ".join(plain)))
+    twice = [name for name in plain[:len(values)] if name in fields]
+    if twice:
+        return ArgumentTypeError("%s: %s is given twice" % (where, twice[0]))
+    lost = [p.name for p in all_of if p.default is p.empty and p.name not in fields and p.name not in plain[:len(values)]]
+    if lost:
+        return ArgumentTypeError("%s: %s %s missing; %s(%s)" % (where, ", ".join(lost), "is" if len(lost) == 1 else "are", where,
+                                                               ", ".join(plain + ["%s=..." % name for name in named if name in lost])))
+    return None
+
+
+def _short(value):
+    """A value as an error message shows it, without its type."""
+    text = _given(value)
+    return text[:text.rindex(" (")] if text.endswith(" is given") and " (" in text else text.replace(" is given", "")
+
+
+def _binds(function, where, own):
+    """A function whose arguments that do not fit raise ArgumentTypeError. own: the first one is self."""
+    @functools.wraps(function)
+    def bind(*values, **fields):
+        try:
+            return function(*values, **fields)
+        except TypeError as error:
+            if error.__traceback__.tb_next is not None:     # of the function, not of its call
+                raise
+            found = _unbound(function, where if not own or "." not in where else "%s.%s" % (
+                getattr(values[0], "__name__", type(values[0]).__name__), function.__name__), values[own:], fields)
+        raise found or ArgumentTypeError("%s: the arguments do not fit" % where)
+    return bind
+
+
+def _binds_law(function, name):
+    """The same for a built-in law, without a call in between: laws in Python call them for each contact."""
+    library, key = _lib.__dict__, "dempy_" + name
+
+    @functools.wraps(function)
+    def bind(*values, **fields):
+        try:
+            return library[key](*values, **fields)
+        except TypeError:
+            found = _unbound(function, "dem." + name, values, fields)
+            if not found:
+                raise
+        except KeyError:                                    # the library is not loaded yet
+            return function(*values, **fields)
+        raise found
+    return bind
+
+
+def _bind_all(names):
+    """Gives the public functions and methods of the module the error messages of _binds."""
+    for name, thing in list(names.items()):
+        if getattr(thing, "__module__", "") != __name__ or name[0] == "_" or name != getattr(thing, "__name__", name):
+            continue
+        if isinstance(thing, types.FunctionType):
+            names[name] = _binds_law(thing, name) if name in _LAW_NEEDS else _binds(thing, "dem." + name, 0)
+        elif isinstance(thing, type):
+            for part, member in list(vars(thing).items()):
+                if isinstance(member, types.FunctionType) and (part[0] != "_" or part == "__init__" and not issubclass(
+                        thing, (Struct, ReplayBase, SlabsBase))):
+                    where = thing.__name__.replace("Base", "")
+                    setattr(thing, part, _binds(member, where if part == "__init__" else "%s.%s" % (where, part), 1))
+                elif isinstance(member, classmethod) and part[0] != "_" and part != "from_param":
+                    setattr(thing, part, classmethod(_binds(member.__func__, "%s.%s" % (thing.__name__, part), 1)))
+
+
 def _c(kind):
     return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
 
@@ -714,7 +886,7 @@ def _convert(value, kind, exact=True):
             raise ValueError("%d words are given, %d are wanted, one for each axis" % (len(items), kind.size))
         return kind.c(*[_number(item, kind.kind) for item in items])
     if isinstance(kind, type) and issubclass(kind, ctypes.Array):
-        if isinstance(value, kind):
+        if isinstance(value, (kind, kind._type_*kind._length_)):
             return value
         if value is None:
             return kind()
@@ -771,7 +943,7 @@ def _array(value, kind, width=1, count=None, null=False):
         array = [kind._made(item) for item in _items(value, "a list of %s" % kind.__name__)]
         array = (kind*len(array))(*array)
     else:
-        array = _reals(value, kind, width, wanted)
+        array = _reals(value, kind, width, wanted, count)
     if len(array) % width:
         raise ValueError("%d numbers are given, which is no multiple of %d; an array of shape %s is wanted" % (len(array), width, wanted))
     if count is not None and len(array) != count*width:
@@ -780,10 +952,21 @@ def _array(value, kind, width=1, count=None, null=False):
     return array
 
 
-def _reals(value, kind, width, wanted):
+def _remedy(shape, width, count):
+    """What makes an array of this shape fit, as the end of an error message."""
+    if width == 3 and shape[-1] == 4:                       # what world.bodies.positions returns
+        return "; leave out column 4: array[:, :3]"
+    if len(shape) == 2 and shape[0] == width and count in (None, shape[1]):
+        return "; transpose it"
+    return ""
+
+
+def _reals(value, kind, width, wanted, count):
     """Numbers as a C array."""
     if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
         raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted))
+    if isinstance(value, Array):
+        value = value.view
     try:
         view = memoryview(value)
     except (TypeError, ValueError):
@@ -796,7 +979,7 @@ def _reals(value, kind, width, wanted):
             raise TypeError("%s, an array of shape %s is wanted" % (_given(value), wanted))
         if len(shape) > 1 and shape[-1] != width and not (0 in shape):
             raise ValueError("the shape %s is given, %s is wanted%s" % (
-                shape, wanted, "; transpose it" if len(shape) == 2 and shape[0] == width else ""))
+                shape, wanted, _remedy(shape, width, count)))
     if view and view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
         return (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
     if hasattr(value, "tolist"):
@@ -830,7 +1013,8 @@ def _rows(value, numbers, kind, width, wanted, depth):
         _rows(item, numbers, kind, width, wanted, depth + 1)
     found = len(numbers) - begun
     if depth and not nested and found != width:
-        raise ValueError("a row has the shape (%d,), an array of shape %s is wanted" % (found, wanted))
+        raise ValueError("a row has the shape (%d,), an array of shape %s is wanted%s" % (
+            found, wanted, "; leave out number 4 of each row" if width == 3 and found == 4 else ""))
 
 
 def _array_of(value, kind, where, width=1, count=None, null=False):
@@ -848,12 +1032,149 @@ def _view(pointer, kind, shape, owner, const):
     count = 1
     for length in shape:
         count *= length
+    if issubclass(kind, Struct):
+        array = _row(kind, count).from_address(ctypes.addressof(pointer.contents)) if count else _row(kind, 0)()
+        array.owner, array._call = owner, owner._call
+        return array
     array = (kind*count).from_address(ctypes.addressof(pointer.contents)) if count else (kind*0)()
     array.owner = owner                                     # the world lives as long as the view
-    if issubclass(kind, Struct):
-        return array
     view = memoryview(array).cast("B").cast(array._type_._type_, *([list(shape)] if count else []))
-    return view.toreadonly() if const else view
+    return Array(view.toreadonly() if const else view)
+
+
+class Array:
+    """Numbers with one or two axes: a view of memory of the world, or a copy. len, indices and loops go by rows; array[i, j],
+    array[i], array[1:3], array[:, 2] and array[:, :3] are parts of it. numpy.asarray(array) views it, array.tolist() is a
+    list, array.view the memoryview."""
+    __slots__ = ("view",)
+
+    def __init__(self, view):
+        self.view = view if isinstance(view, memoryview) else memoryview(view)
+
+    def __getattr__(self, name):                            # shape, tolist, nbytes, ...
+        if name[:2] == "__":
+            raise AttributeError(name)
+        if name[0] != "_" and hasattr(memoryview, name):
+            return getattr(self.view, name)
+        raise NoFieldError("Array has no attribute %r; it has shape, tolist() and those of a memoryview; numpy.asarray(array) "
+                           "has more" % name)
+
+    @property
+    def shape(self):
+        """The lengths of the axes."""
+        return self.view.shape
+
+    def tolist(self):
+        """The numbers as a list, of lists if there are two axes."""
+        return self.view.tolist()
+
+    def tobytes(self):
+        """The numbers as bytes."""
+        return self.view.tobytes()
+
+    def __len__(self):
+        return len(self.view)
+
+    def _flat(self):
+        view = self.view
+        return view if view.ndim == 1 else view.cast("B").cast(view.format)
+
+    def __getitem__(self, index):
+        view = self.view
+        try:
+            if view.ndim == 1:
+                found = view[index[0] if type(index) is tuple and len(index) == 1 else index]
+                return Array(found) if type(found) is memoryview else found
+            if type(index) is tuple and len(index) == 2 and slice not in (type(index[0]), type(index[1])):
+                return view[index]
+            return self._part(*index if type(index) is tuple else (index,))
+        except TypeError:
+            raise ArgumentTypeError("array[...]: %s, numbers or slices are wanted, one for each of %d axes" % (
+                _given(index), view.ndim)) from None
+        except (IndexError, ValueError, NotImplementedError):
+            raise NoSuchError("array[...]: %s, the array has the shape %s" % (_given(index), view.shape)) from None
+
+    def _part(self, i, j=slice(None)):
+        """Rows, or a part of rows, or of columns, of an array with two axes."""
+        view, flat = self.view, self._flat()
+        count, width = view.shape
+        rows, columns = range(count)[i], range(width)[j]
+        if isinstance(rows, int):
+            return Array(flat[width*rows:width*rows + width][j])
+        if isinstance(columns, int):
+            return Array(flat[columns::width][i])
+        if rows.step == 1 and len(columns) == width and columns.step == 1 and len(rows):
+            return Array(flat[width*rows.start:width*rows.stop].cast("B").cast(view.format, [len(rows), width]))
+        part = memoryview(bytearray(len(rows)*len(columns)*view.itemsize)).cast(view.format)     # a copy
+        for k, row in enumerate(rows):
+            part[k*len(columns):(k + 1)*len(columns)] = flat[width*row:width*row + width][j]
+        return Array((part.cast("B").cast(view.format, [len(rows), len(columns)]) if len(part) else part).toreadonly())
+
+    def __setitem__(self, index, value):
+        view = self.view
+        if view.readonly:
+            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change, and "
+                                    "world.bodies.positions = array sets all positions")
+        part = self[index]
+        try:
+            if not isinstance(part, Array):
+                view[index] = value
+                return
+            items, target = _items(value, "%d numbers" % len(part)), part.view
+            if target.ndim != 1 or target.readonly or len(items) != len(target):
+                raise ValueError("%s; one number or one row can be set" % _given(value))
+            for i, item in enumerate(items):
+                target[i] = item
+        except (TypeError, ValueError) as error:
+            raise _named(error, "array[%s]" % (index,)) from None
+
+    def __iter__(self):
+        view = self.view
+        if view.ndim == 1:
+            return iter(view)
+        flat, width = self._flat(), view.shape[1]
+        return (Array(flat[k:k + width]) for k in range(0, len(flat), width))
+
+    def __eq__(self, other):
+        if isinstance(other, (Array, memoryview)):
+            return self.view == getattr(other, "view", other)
+        return self.tolist() == _plain(list(other)) if isinstance(other, (list, tuple)) else NotImplemented
+
+    __hash__ = None
+
+    def __repr__(self):
+        rows = [repr(row) for row in (self.view[:4].tolist() if self.view.ndim == 1 else [row.tolist() for row in self[:4]])]
+        return "Array([%s%s])" % (", ".join(rows), ", ... (%s)" % " x ".join(map(str, self.view.shape)) if len(self) > 4 else "")
+
+    @property
+    def __array_interface__(self):                          # numpy looks here first
+        view = self.view
+        if not view.c_contiguous:
+            raise AttributeError("__array_interface__")
+        return {"shape": view.shape, "typestr": _TYPESTRS[view.format], "data": view, "version": 3}
+
+    def __array__(self, dtype=None, copy=None):
+        import numpy
+        array = numpy.asarray(self.view)
+        if dtype is not None and dtype != array.dtype:
+            return array.astype(dtype)
+        return array.copy() if copy else array
+
+    def __buffer__(self, flags):
+        return memoryview(self.view)
+
+    def __reduce_ex__(self, _):
+        return _array_from, (self.view.format, self.view.shape, self.view.tobytes())
+
+
+_TYPESTRS = {kind._type_: "%s%s%d" % ("<" if sys.byteorder == "little" else ">", "f" if kind not in _LIMITS else "i" if _LIMITS[
+    kind][0] else "u", ctypes.sizeof(kind)) for kind in _NUMBERS}
+
+
+def _array_from(form, shape, data):
+    """An array that was pickled."""
+    view = memoryview(data).cast(form)
+    return Array(view.cast("B").cast(form, shape) if len(shape) > 1 and len(view) else view)
 
 
 def _plain(value):
@@ -862,9 +1183,9 @@ def _plain(value):
         return tuple(value)
     if isinstance(value, Struct):
         return value.to_dict()
-    if isinstance(value, memoryview):
+    if isinstance(value, (memoryview, Array)):
         return value.tolist()
-    if isinstance(value, ctypes.Array):
+    if isinstance(value, (ctypes.Array, list, tuple)):
         return [_plain(item) for item in value]
     return value
 
@@ -922,10 +1243,18 @@ class Struct(ctypes.Structure):
                 raise ArgumentTypeError("%s: %s is given twice" % (type(self).__name__, both.pop()))
             self._put(dict(zip(self.kinds, values), **fields))
 
-    def _put(self, fields):
+    @classmethod
+    def _of_call(cls, where, fields):
+        """A struct of the arguments of a call, whose name error messages have."""
+        made = cls()
+        made._put(fields, where + ": ")
+        return made
+
+    def _put(self, fields, where=None):
+        where = where or type(self).__name__ + "."
         for name in fields:
             if name not in self.kinds:
-                raise ArgumentTypeError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+                raise ArgumentTypeError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
         sizes, pointers = {}, False
         for name, value in fields.items():
             if name in self.counts:
@@ -968,7 +1297,7 @@ class Struct(ctypes.Structure):
                 else:
                     _set(self, name, _convert(value, kind))
             except (TypeError, ValueError, OverflowError) as error:
-                raise _named(error, "%s.%s" % (type(self).__name__, name)) from None
+                raise _named(error, where + name) from None
             if isinstance(value, Struct):
                 self._keep(name, value, (name,))
             elif isinstance(value, (list, tuple)):
@@ -976,16 +1305,16 @@ class Struct(ctypes.Structure):
                     if isinstance(item, Struct):
                         self._keep("%s[%d]" % (name, i), item, (name, i))
         for length, arrays in self.counts.items():          # a length follows from its arrays
-            self._length(length, arrays, sizes, fields, pointers)
+            self._length(length, arrays, sizes, fields, pointers, where)
 
-    def _length(self, length, arrays, sizes, fields, pointers):
+    def _length(self, length, arrays, sizes, fields, pointers, where):
         """Sets the length that arrays have in common."""
         given = fields.get(length)
         if given is not None:
             try:
                 given = _number(given, ctypes.c_int)
             except (TypeError, OverflowError) as error:
-                raise _named(error, "%s.%s" % (type(self).__name__, length)) from None
+                raise _named(error, where + length) from None
         found = [field for field, _ in arrays if field in sizes]
         if found:
             count = sizes[found[0]]
@@ -995,18 +1324,18 @@ class Struct(ctypes.Structure):
                     others[field] = getattr(self, length)
             if others:
                 field, size = others.popitem()
-                raise ArgumentError("%s.%s has %d element%s, %s has %d; both must have as many" % (
-                    type(self).__name__, field, size, "s"*(size != 1), found[0], count))
+                raise ArgumentError("%s%s has %d element%s, %s has %d; both must have as many" % (
+                    where, field, size, "s"*(size != 1), found[0], count))
             if given and given != count:
-                raise ArgumentError("%s.%s is %d, but %s has %d element%s; leave it out, it follows from the array" % (
-                    type(self).__name__, length, given, found[0], count, "s"*(count != 1)))
+                raise ArgumentError("%s%s is %d, but %s has %d element%s; leave it out, it follows from the array" % (
+                    where, length, given, found[0], count, "s"*(count != 1)))
             _set(self, length, count)
         elif pointers and given is not None:
             _set(self, length, given)
         elif given:
             if given != getattr(self, length):
-                raise ArgumentError("%s.%s is %d, but %s has no elements; leave it out, it follows from the array" % (
-                    type(self).__name__, length, given, arrays[0][0]))
+                raise ArgumentError("%s%s is %d, but %s has no elements; leave it out, it follows from the array" % (
+                    where, length, given, arrays[0][0]))
         elif any(field in fields for field, _ in arrays[:1]) and not pointers:
             _set(self, length, 0)
 
@@ -1028,12 +1357,11 @@ class Struct(ctypes.Structure):
             if name[:1] == "_":
                 _set(self, name, value)
                 return
-            raise FieldError("%s has no field %r; it has %s" % (type(self).__name__, name, ", ".join(self.kinds)))
+            raise FieldError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
         base = self
         while base is not None:
             if getattr(base, "_call", None):
-                raise FieldError("%s.%s: this struct is a copy, whose change would have no effect; %s" % (
-                    type(self).__name__, name, base._call))
+                _changed(self, "%s.%s" % (type(self).__name__, name))
             base = getattr(base, "_b_base_", None)
         if kind is ctypes.c_double and type(value) is float:
             _set(self, name, value)
@@ -1095,7 +1423,7 @@ class Struct(ctypes.Structure):
     def __getitem__(self, index):
         if isinstance(index, str):
             if index not in self.kinds:
-                raise ArgumentError("%s has no field %r; it has %s" % (type(self).__name__, index, ", ".join(self.kinds)))
+                raise ArgumentError("%s has no field %r%s" % (type(self).__name__, index, _near(index, self.kinds)))
             return getattr(self, index)
         try:
             return tuple(self)[index]
@@ -1114,7 +1442,7 @@ class Struct(ctypes.Structure):
         return {name: _plain(getattr(self, name)) for name, kind in self.kinds.items() if not _raw(kind)}
 
     def __eq__(self, other):
-        if isinstance(other, Struct) and type(other) is not type(self) and not (self.numbers and other.numbers):
+        if isinstance(other, Struct) and (other.plain or type(other)) is not (self.plain or type(self)) and not (self.numbers and other.numbers):
             return False
         if not isinstance(other, (Struct, tuple, list)):
             return NotImplemented
@@ -1125,19 +1453,20 @@ class Struct(ctypes.Structure):
     __hash__ = None
 
     def __reduce_ex__(self, _):
+        own = self.plain or type(self)
         arrays = {name: data for name, data in ((name, _array_bytes(name, kind, self)) for name, kind in self.kinds.items()
                                                 if isinstance(kind, View)) if data is not None}
-        raw, c = {}, type(self).from_buffer_copy(self)      # pointers mean nothing elsewhere
+        raw, c = {}, own.from_buffer_copy(self)             # pointers mean nothing elsewhere
         for (name, kind), field in zip(self._fields_, self.kinds):
             if isinstance(self.kinds[field], (View, Function)) or kind is ctypes.c_char_p or kind is ctypes.c_void_p or issubclass(
                     kind, ctypes._Pointer):
                 if kind is ctypes.c_char_p and getattr(self, name) is not None:
                     raw[name] = getattr(self, name)
                 ctypes.memset(ctypes.addressof(c) + getattr(type(self), name).offset, 0, ctypes.sizeof(kind))
-        return _struct_from, (type(self), bytes(c), arrays, dict(self._functions or {}), raw)
+        return _struct_from, (own, bytes(c), arrays, dict(self._functions or {}), raw)
 
     def __copy__(self):
-        copy = type(self).from_buffer_copy(self)            # its arrays are those of the original
+        copy = (self.plain or type(self)).from_buffer_copy(self)    # its arrays are those of the original
         copy.__dict__.update(_functions=dict(self._functions or {}), _of=self._of, _ids=self._ids, _extra=(self._extra, self._objects))
         return copy
 
@@ -1149,7 +1478,7 @@ class Struct(ctypes.Structure):
         shown = []
         for name in self.kinds:
             value = getattr(self, name)
-            if isinstance(value, memoryview):
+            if isinstance(value, Array):
                 value = "<%s>" % " x ".join(map(str, value.shape))
             elif isinstance(value, ctypes.Array):
                 value = list(value)
@@ -1159,6 +1488,24 @@ class Struct(ctypes.Structure):
 
 
 Struct.whole = False            # a sequence must have all fields
+Struct.plain = None             # of the class of a struct that a function may only read: the class without that
+
+
+@functools.lru_cache(None)
+def _read(kind):
+    """The class of a struct that a function of yours receives and may only read."""
+    return type(kind.__name__, (kind,), {"_call": "a function may only read it", "plain": kind, "__module__": kind.__module__,
+                                         "__doc__": kind.__doc__})
+
+
+def _changed(base, what):
+    """Refuses to change a part of a struct that a call has returned, or that a function may only read."""
+    while base is not None:
+        call = getattr(base, "_call", None)
+        if call:
+            raise FieldError("%s cannot be set; %s" % (what, call) if getattr(base, "plain", None) else
+                             "%s: this is a copy, whose change would have no effect; %s" % (what, call))
+        base = getattr(base, "_b_base_", None)
 
 
 def _raw(kind):
@@ -1178,6 +1525,90 @@ def _same(a, b):
         return bool(a == b)
     except ValueError:          # arrays of numpy
         return False
+
+
+class Row:
+    """An array inside of a struct, and what functions return as one: a sequence of numbers, or of structs. Numbers take part
+    in sums and products; two rows are equal if their numbers are."""
+    _call = None
+
+    def __setitem__(self, index, value):
+        _changed(self, "array[%s]" % (index,))
+        try:
+            ctypes.Array.__setitem__(self, index, value)
+        except (TypeError, ValueError, IndexError) as error:
+            raise self._wrong(index, error) from None
+
+    def __getitem__(self, index):
+        try:
+            return ctypes.Array.__getitem__(self, index)
+        except (TypeError, IndexError) as error:
+            raise self._wrong(index, error) from None
+
+    def _wrong(self, index, error):
+        if isinstance(error, IndexError):
+            return NoSuchError("%s is given, the array has the numbers 0 to %d" % (index, len(self) - 1))
+        return ArgumentTypeError("array[%s]: %s" % (index, error))
+
+    def __iter__(self):
+        return iter(ctypes.Array.__getitem__(self, slice(0, len(self))))
+
+    def __repr__(self):
+        return "[%s%s]" % (", ".join(map(repr, self[:24])), ", ... (%d in all)" % len(self) if len(self) > 24 else "")
+
+    def __eq__(self, other):
+        return len(self) == len(other) and all(map(_same, self, other)) if isinstance(other, (ctypes.Array, list, tuple)) else NotImplemented
+
+    __hash__ = None
+
+    def __reduce_ex__(self, _):
+        if issubclass(self._type_, ctypes._Pointer):
+            raise ArgumentTypeError("an array of pointers is not pickled; return its numbers")
+        kind, lengths = self._type_, [len(self)]
+        while issubclass(kind, Row):
+            kind, lengths = kind._type_, lengths + [kind._length_]
+        return _row_from, (kind, lengths, bytes(self))
+
+    def __copy__(self):
+        return _row(self._type_, len(self)).from_buffer_copy(self)
+
+    def __deepcopy__(self, memo):
+        return self.__copy__()
+
+    def _with_each(self, other, function, swap=False):
+        if self._type_ not in _NUMBERS:
+            return NotImplemented
+        if isinstance(other, (int, float)) or not hasattr(other, "__len__") and hasattr(other, "__float__"):
+            other = (other,)*len(self)
+        elif not isinstance(other, (Row, Numbers, tuple, list)) or len(other) != len(self):
+            return NotImplemented                           # an array of numpy answers itself
+        return _row(Real if self._type_ in _LIMITS else self._type_, len(self))(*[
+            function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
+
+
+@functools.lru_cache(1024)
+def _row(kind, length):
+    """The type of an array of this length."""
+    return type("Row", (Row, ctypes.Array), {"_type_": kind, "_length_": length, "__module__": __name__})
+
+
+@functools.lru_cache(1024)
+def _row_read(kind, length):
+    """The type of an array that a function receives and may only read."""
+    return type("Row", (_row(kind, length),), {"_call": "a function may only read it", "plain": True, "__module__": __name__})
+
+
+def _row_from(kind, lengths, data):
+    """An array that was pickled."""
+    for length in reversed(lengths):
+        kind = _row(kind, length)
+    return kind.from_buffer_copy(data)
+
+
+def _fixed(array):
+    """An array of structs that a call has filled, whose fields are not set."""
+    array._call = "dem.h computes it"
+    return array
 
 
 class Numbers(Struct):
@@ -1205,7 +1636,7 @@ class Numbers(Struct):
     def _with_each(self, other, function, swap=False):
         if isinstance(other, (int, float)) or not hasattr(other, "__len__") and hasattr(other, "__float__"):
             other = (other,)*len(self)
-        elif not isinstance(other, (Numbers, tuple, list)) or len(other) != len(self):
+        elif not isinstance(other, (Numbers, Row, tuple, list)) or len(other) != len(self):
             return NotImplemented                           # an array of numpy answers itself
         return type(self)(*[function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
 
@@ -1245,6 +1676,10 @@ class Numbers(Struct):
         return sum(a*b for a, b in zip(self, type(self)._made(other)))
 
 
+for _name in "add radd sub rsub mul rmul truediv rtruediv abs".split():
+    setattr(Row, "__%s__" % _name, getattr(Numbers, "__%s__" % _name))
+
+
 class Vector(Numbers):
     """What a Vec3 has beside its fields: v + w, 2*v, v/2, abs(v) (its length), v.dot(w), v.cross(w)."""
 
@@ -1262,16 +1697,6 @@ def _field(name, kind, doc):
         value = getattr(self, raw)
         if isinstance(kind, Function):
             return (self._functions or {}).get((name,)) or (value if value else None)
-        if isinstance(kind, View):
-            if kind.one:
-                return value[0] if value else None
-            shape = []
-            for axis in kind.shape:
-                length = getattr(self, axis) if isinstance(axis, str) else axis
-                if isinstance(length, ctypes.Array):        # cells along three axes
-                    length = length[0]*length[1]*length[2]
-                shape.append(length)
-            return _view(value, kind.kind, shape, self, kind.const) if shape else value
         if isinstance(kind, Choices):
             return tuple(kind.kind(item) for item in value)
         if isinstance(kind, Text):
@@ -1282,6 +1707,18 @@ def _field(name, kind, doc):
             return kind(value)
         except ValueError:
             return value
+
+    def view(self):
+        value = getattr(self, raw)
+        if kind.one:
+            return value[0] if value else None
+        shape = []
+        for axis in kind.shape:
+            length = getattr(self, axis) if type(axis) is str else axis
+            if isinstance(length, Row):                     # cells along three axes
+                length = length[0]*length[1]*length[2]
+            shape.append(length)
+        return _view(value, kind.kind, shape, self, kind.const) if shape else value
 
     def put(self, value):
         if isinstance(kind, Function):
@@ -1301,7 +1738,7 @@ def _field(name, kind, doc):
             self.__dict__["_functions"] = functions
         else:
             _set(self, raw, _convert(value, kind))
-    return property(get, put, doc=doc)
+    return property(view if isinstance(kind, View) else get, put, doc=doc)
 
 
 def _compiled(function):
@@ -1319,11 +1756,14 @@ def _compiled(function):
 
 def _struct(cls):
     """Gives a subclass of Struct the fields of its rows."""
-    fields, docs = [], []
+    fields, docs, kinds = [], [], {}
     cls._functions_ = {}
     for name, kind, doc in cls.rows:
         if isinstance(kind, View) and not kind.shape and not kind.one:
             kind.shape = tuple(length for length, arrays in cls.counts.items() if name in [array for array, _ in arrays])
+        if isinstance(kind, type) and issubclass(kind, ctypes.Array):
+            kind = _row(kind._type_, kind._length_)
+        kinds[name] = kind
         special = isinstance(kind, (View, Text, Function, Choices)) or kind is str or issubclass(kind, enum.IntEnum)
         c = ctypes.c_char_p if kind is str else _c(kind)
         fields.append(("_" + name if special else name, c))
@@ -1333,13 +1773,13 @@ def _struct(cls):
             setattr(cls, name, _field(name, kind, doc))
         if doc:
             docs.append("%s: %s" % (name, doc))
-    cls.kinds = {name: kind for name, kind, _ in cls.rows}
+    cls.kinds = kinds
     cls.counted = {field for arrays in cls.counts.values() for field, _ in arrays if not isinstance(cls.kinds[field], View)}
     cls.numbers = issubclass(cls, Numbers)
     cls.whole = cls.__name__ == "Box"
     cls._fields_ = fields
     if docs:
-        cls.__doc__ = (cls.__doc__ or "") + "\n\n" + "\n".join(docs)
+        cls.__doc__ = "\n".join(line.strip() for line in (cls.__doc__ or "").split("\n")).strip() + "\n\n" + "\n".join(docs)
     return cls
 
 
@@ -1357,9 +1797,20 @@ class Id(Struct):
 
     def __setattr__(self, name, value):
         if name[:1] != "_":
-            raise FieldError("%s.%s: an id does not change, and its object has %s" % (type(self).__name__, name, ", ".join(
-                word for word in dir(type(self)) if word[0] != "_" and word not in dir(Id))))
+            kind = type(self)
+            one = kind.__name__.lower()
+            if hasattr(kind, name + "_set"):
+                call = "call %s.%s_set" % (one, name)
+            elif hasattr(kind, "set") and name in kind.set.__wrapped__.__code__.co_varnames:
+                call = "write %s.set(%s=...)" % (one, name)
+            else:
+                call = "an id does not change, and its object has %s" % ", ".join(
+                    word for word in dir(kind) if word[0] != "_" and word not in dir(Id))
+            raise FieldError("%s.%s cannot be set; %s" % (kind.__name__, name, call))
         _set(self, name, value)
+
+    def __getattr__(self, name):
+        raise _no_attribute(self, name)
 
     def of(self, world):
         """The same id, as a part of another world: of a copy that a function of yours sees, or of a checkpoint."""
@@ -1429,6 +1880,19 @@ def _kept(name):
                          "copy.copy(%s), or the numbers that you need" % (name, name))
 
 
+def _beyond(error, kind, **arrays):
+    """The exception of a function that used a number beyond the arrays that it receives, in the place of that of ctypes."""
+    if str(error) != "invalid index":
+        return error
+    what = {"memory": ("contact history", "World(law_memory=...)"), "values": ("row of columns", "output(columns=...)"),
+            "reals": ("numbers of the body", "World(body_reals=...)"), "rates": ("rates", "World(body_reals=...)")}
+    words = ["its %s has %s (%s)" % (what[name][0], "the numbers 0 to %d" % (kind_._length_ - 1) if kind_._length_ else "no numbers",
+                                     what[name][1]) for name, kind_ in arrays.items()]
+    made = NoSuchError("your function (%s) used a number beyond an array: %s" % (kind, "; ".join(words)))
+    made.__cause__ = error
+    return made.with_traceback(error.__traceback__)
+
+
 def _returned(value, kind):
     """The exception of a function that returns what it must not."""
     return ArgumentTypeError("your function (%s) returned %s, but what it returns has no effect; it sets the fields of its "
@@ -1444,6 +1908,40 @@ def _real_from(value, kind):
             kind, str(error).replace("is given", "was returned"))) from None
 
 
+def _no_attribute(thing, name):
+    """The exception for an attribute that an id does not have. It names the struct that has such a field."""
+    kind = type(thing)
+    if name[:1] == "_" or name in ("shape", "dtype", "tolist"):     # what numpy and others look for
+        return AttributeError("%s has no attribute %r" % (kind.__name__, name))
+    one, parts = kind.__name__.lower(), _PARTS.get(kind.__name__, {})
+    found = ["%s.%s.%s" % (one, part, name) for part in sorted(parts, key=lambda part: part not in ("state", "desc"))
+             if name in parts[part].kinds]
+    words = [word for word in dir(kind) if word[0] != "_" and word not in dir(Struct)]
+    if name + "s" in words:
+        found.insert(0, "%s.%ss" % (one, name))
+    if found:
+        return NoFieldError("%s has no attribute %r; read %s" % (kind.__name__, name, " or ".join(found[:3])))
+    import difflib
+
+    fields = {field: "%s.%s" % (part, field) for part in sorted(parts) for field in parts[part].kinds}
+    near = difflib.get_close_matches(name, words + list(fields), 2)
+    return NoFieldError("%s has no attribute %r%s" % (kind.__name__, name, "; did you mean %s?" % " or ".join(
+        "%s.%s" % (one, fields.get(word, word)) for word in near) if near else _near(name, words)))
+
+
+def _no_groups(name):
+    return ArgumentError("World.group: %s, but this world has no groups; name them when you make it: dem.World(groups=%r)" % (
+        _given(name), name))
+
+
+def _in_python(text):
+    """An error message of dem.h, with the functions that it recommends as they are called in Python."""
+    head, colon, rest = text.partition(": ")
+    names = {function.replace("dempy_", "dem_"): name[0].lower() + name[1:] if "." in name else "dem." + name
+             for function, _, _, name, _ in _FUNCTIONS if not function.startswith(("dempy_rows", "dempy_ids", "dempy_put"))}
+    return head + colon + re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+
+
 class Handle:
     """A world, a replay or slabs: memory that the library owns."""
     _at = _context = None
@@ -1453,7 +1951,8 @@ class Handle:
         """The pointer, for a call."""
         at = self._at
         if at is None:
-            raise ArgumentError("%s.%s: this %s is closed" % (type(self).__name__, sys._getframe(1).f_code.co_name,
+            frame = sys._getframe(1)                        # of a method, perhaps of an id
+            raise ArgumentError("%s.%s: this %s is closed" % (type(frame.f_locals.get("self", self)).__name__, frame.f_code.co_name,
                                                              type(self).__name__.lower()))
         return at
 
@@ -1475,7 +1974,7 @@ class Handle:
         return ""
 
     def _raise(self, kind):
-        text = self._text() or "no message"
+        text = _in_python(self._text() or "no message")
         if kind is Error:                                   # a null id
             kind = (MemoryError if ": out of memory" in text else FileError if ": cannot write" in text or ": cannot read" in text
                     else ArgumentError)
@@ -1488,8 +1987,7 @@ class Handle:
         """Raises the exception of a function of yours, or that of a result other than OK."""
         if self._context and self._context.raised is not None:
             error, self._context.raised = self._context.raised, None
-            if result and hasattr(error, "add_note"):
-                error.add_note("dem.h: " + self._text())
+            self._text()                                    # a consequence: read, so that no run quotes it later
             raise error
         if result:
             self._raise(_ERRORS[result])
@@ -1554,7 +2052,7 @@ class Handle:
             if added == 0 and (count or text.startswith(name)):
                 self._raise(Error)
             if added:
-                warnings.warn(text, stacklevel=3)
+                warnings.warn(_in_python(text), stacklevel=4)
         return added
 
     def _bound(self, struct, key=None):
@@ -1579,16 +2077,17 @@ class Handle:
         self._context.kept[key or len(self._context.kept)] = made, struct
         return copy
 
-    def _callback(self, kind, function):
-        """A C function of a Python function, for one call."""
+    def _callback(self, kind, function, where):
+        """A C function of a Python function, for one call. where: the call and the argument."""
+        if function is _go_on and self._context.go_on:
+            return self._context.go_on
         if function is None:
             return kind.c()
         if not callable(function) or isinstance(function, type):
-            raise ArgumentTypeError("%s.%s: %s, a function is wanted" % (type(self).__name__, sys._getframe(1).f_code.co_name,
-                                                                        _given(function)))
+            raise ArgumentTypeError("%s: %s, a function is wanted%s" % (where, _given(function), "; world.run(1, dem.progress_print) prints "
+                                                                        "the progress" if where.endswith(": progress") else ""))
         if function is _go_on:
-            if not self._context.go_on:
-                self._context.go_on = kind.wrap(_go_on, self._context, None)
+            self._context.go_on = kind.wrap(_go_on, self._context, None)
             return self._context.go_on
         if isinstance(function, ctypes._CFuncPtr):
             return ctypes.cast(function, kind.c)
@@ -1728,12 +2227,23 @@ class WorldBase(Handle):
                 if whole:
                     whole(body, id, time, sum, torque)
             desc._functions["body_force",] = both
+        for name in ("groups", "body_reals", "law_memory_names"):
+            words = (getattr(desc, name) or "").split()
+            twice = [word for i, word in enumerate(words) if word in words[:i]]
+            if twice:
+                raise ArgumentError("World: %s: %r is given twice; names must differ" % (name, twice[0]))
         self._context.memory, self._context.vectors = desc.law_memory, desc.law_vectors
         self._context.reals = len((desc.body_reals or "").split())
+        if "law" in functions:
+            for renew in _PROOFS:
+                renew()
         bound = self._bound(desc, "desc")
         at = _lib.dem_world_create_checked(bound, VERSION, ctypes.sizeof(Real))
         if not at:
-            raise ArgumentError((_lib.dem_world_create_error_get(bound) or b"").decode())
+            text = (_lib.dem_world_create_error_get(bound) or b"").decode()
+            name = text.partition(": ")[2].partition(" ")[0]
+            value = getattr(desc, name, None) if name in desc.kinds else None
+            raise ArgumentError(text + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
         self._memory = _Memory(at, self._context)
 
     @classmethod
@@ -1749,7 +2259,9 @@ class WorldBase(Handle):
     @property
     def gravity(self):
         """The acceleration of gravity, m/s2. An assignment calls gravity_set."""
-        return self.desc.gravity
+        desc = self.desc
+        desc.__dict__["_call"] = "write world.gravity = (x, y, z)"
+        return desc.gravity
 
     @gravity.setter
     def gravity(self, value):
@@ -1807,6 +2319,9 @@ class ReplayBase(Handle):
     def path(self):
         """The path of the file."""
         return self._path
+
+    def __repr__(self):
+        return "<Replay %s, %s>" % (self._path, "closed" if self._at is None else "open")
 
     def __del__(self):
         pass                                        # the world goes on recording
@@ -1892,12 +2407,29 @@ def tail(memory, first):
     return part
 
 
+@functools.lru_cache(None)
+def _rows_of(name):
+    """Of an array of all bodies: name of the pointer, type of its numbers, place in the struct, width (0: one axis)."""
+    kind = Bodies.kinds[name]
+    if not isinstance(kind, View):                          # groups
+        return name, ctypes.c_uint32, getattr(Bodies, name).offset, 0
+    return "_" + name, kind.kind, getattr(Bodies, "_" + name).offset, kind.shape[1] if len(kind.shape) > 1 else 0
+
+
+_SETTERS = {"reals": "call world.bodies_reals_set(array)", "groups": "call world.bodies_group_set(selection, group, member)",
+            "orientations": "call body.set(orientation=...) for each body", "masses": "a mass follows from the density of the material "
+            "and the radius; call body.radius_set(radius)"}
+_SETTERS.update(dict.fromkeys(("radius", "radii", "radiuses"), "call body.radius_set(radius) for each body"))
+_SETTERS.update((one, "write world.bodies.%s = array, or call body.set(%s=...) for one body" % (many, one)) for one, many in (
+    ("position", "positions"), ("velocity", "velocities"), ("spin", "spins")))
+
+
 class Rows:
     """The arrays of all bodies of a world. Row i belongs to the body world.bodies[i] in all of them, and keeps it while the
     world runs: rows are in the order of the slots of bodies, which is the order of adding. A body that is added after
     another one was removed may take its slot, and then its place.
 
-    Each use of an array is a copy of what the world has then, read-only: positions (N x 4: x, y, z, radius, m), velocities
+    Each use of an array is a copy of what the world has then, read-only, as an Array: positions (N x 4: x, y, z, radius, m), velocities
     (N x 4: x, y, z, 0, m/s), spins (rad/s), forces (N, without gravity), torques (N m), masses (kg), slots, materials,
     orientations (N x 4: w, x, y, z), shapes, reals (N x real_count), rates, groups. world.bodies_memory has the arrays of
     dem.h without a copy, in an order that changes while the world runs.
@@ -1922,31 +2454,27 @@ class Rows:
         return self._struct().real_count
 
     def _get(self, name):
-        world, kind = self._world, Bodies.kinds[name]
-        found = _lib.dem_bodies_get(world._c)
+        raw, item, offset, axis = _rows_of(name)
+        at = self._world._c
+        found = _lib.dem_bodies_get(at)
         count = found.count
-        if name == "groups":
-            pointer, item, shape = found.groups, ctypes.c_uint32, [count]
-        else:
-            pointer, item = getattr(found, "_" + name), kind.kind
-            shape = [count if axis == "count" else found.real_count if axis == "real_count" else axis for axis in kind.shape]
+        pointer = getattr(found, raw)
         if not pointer:
             return None
-        width = shape[1] if len(shape) > 1 else 1
-        array = (item*(count*width))()
+        width = found.real_count if axis == "real_count" else axis
+        array = (item*(count*(width or 1)))()
         if count:
             if "dempy_rows" in _lib.__dict__:
-                result = _lib.dempy_rows(world._at, getattr(Bodies, name if name == "groups" else "_" + name).offset,
-                                         width*ctypes.sizeof(item), count, ctypes.addressof(array))
+                result = _lib.dempy_rows(at, offset, (width or 1)*ctypes.sizeof(item), count, ctypes.addressof(array))
                 if result:
                     raise MemoryError("World.bodies.%s: out of memory" % name)
             else:
                 rows = sorted(range(count), key=found.slots.__getitem__)
+                width = width or 1
                 for i, row in enumerate(rows):
                     array[width*i:width*i + width] = pointer[width*row:width*row + width]
-        if not count:
-            return memoryview(array).cast("B").cast(item._type_).toreadonly()
-        return memoryview(array).cast("B").cast(item._type_, shape).toreadonly()
+        view = memoryview(array).cast("B")
+        return Array(view.cast(item._type_, (count, width) if axis and count else (count,)).toreadonly())
 
     def _all(self):
         """The ids of all bodies."""
@@ -1992,7 +2520,7 @@ class Rows:
             rows = self._get(name).tolist() if self.count else []
             for i, letter in enumerate(letters.split()):
                 columns[letter] = [row[i] for row in rows]
-        columns["mass"], columns["material"] = self._get("masses").tolist(), self._get("materials").tolist()
+        columns.update((name, self._get(array).tolist() if self.count else []) for name, array in (("mass", "masses"), ("material", "materials")))
         names = (self._world.desc.body_reals or "").split()
         rows = self._get("reals").tolist() if names and self.count else []
         columns.update((name, [row[i] for row in rows]) for i, name in enumerate(names))
@@ -2000,7 +2528,8 @@ class Rows:
 
     def __setattr__(self, name, value):
         if name not in ("positions", "velocities", "spins"):
-            raise FieldError("World.bodies.%s cannot be set; positions, velocities and spins can" % name)
+            raise FieldError("World.bodies.%s cannot be set; %s" % (name, _SETTERS.get(name) or "positions, velocities and spins can%s" % (
+                _near(name, ("positions", "velocities", "spins", "radii", "reals")) if name not in Bodies.kinds else "")))
         ids = self._all()
         array = _array_of(value, Real, "World.bodies.%s" % name, 3, len(ids))
         if "dempy_put" in _lib.__dict__:
@@ -2020,10 +2549,18 @@ class Structs:
     to_dict() as columns."""
 
     def __init__(self, array):
-        self._array = array
+        self._array = _fixed(array)
 
     def __len__(self):
         return len(self._array)
+
+    def __reduce_ex__(self, _):
+        return _structs_from, (self._array._type_, len(self), bytes(self._array))
+
+    def __eq__(self, other):
+        return len(self) == len(other) and all(map(_same, self, other)) if isinstance(other, (Structs, list, tuple)) else NotImplemented
+
+    __hash__ = None
 
     def __getitem__(self, index):
         try:
@@ -2056,6 +2593,11 @@ class Structs:
 
     def __repr__(self):
         return "<%d %s>" % (len(self), self._array._type_.__name__)
+
+
+def _structs_from(kind, count, data):
+    """Structs that were pickled."""
+    return Structs(_row(kind, count).from_buffer_copy(data) if count else _row(kind, 0)())
 
 
 def _row_property(name, doc):
@@ -2116,6 +2658,9 @@ class Page:
         path = os.fsdecode(_text_of(path, "dem.Page: path"))
         self.path, self.height = path, height
 
+    def __repr__(self):
+        return "dem.Page(%r)" % self.path
+
     def _repr_html_(self):
         try:
             with open(self.path, encoding="utf-8") as file:
@@ -2140,8 +2685,8 @@ class NormalLaw(enum.IntEnum):
 
 
 class TangentLaw(enum.IntEnum):
-    """The law of friction. Every law except DEM_TANGENT_NONE limits the force by Coulomb's law."""
-    # DEM_TANGENT_SPRING if any pair has friction, otherwise DEM_TANGENT_NONE
+    """The law of friction. Every law except "none" limits the force by Coulomb's law."""
+    # "spring" if any pair has friction, otherwise "none"
     AUTO = 0
     # no tangential force
     NONE = 1
@@ -2153,13 +2698,13 @@ class TangentLaw(enum.IntEnum):
     SPRING = 4
     # [DIR05]: the force grows by increments, with kt of the overlap in the middle of the step
     MINDLIN = 5
-    # [THO13]: as DEM_TANGENT_MINDLIN, but the force is scaled down with kt during unloading
+    # [THO13]: as "mindlin", but the force is scaled down with kt during unloading
     MINDLIN_RESCALED = 6
 
 
 class RollingLaw(enum.IntEnum):
     """The law of rolling resistance."""
-    # DEM_ROLLING_EPSD if any pair has rolling friction, otherwise DEM_ROLLING_NONE
+    # "epsd" if any pair has rolling friction, otherwise "none"
     AUTO = 0
     # no rolling resistance
     NONE = 1
@@ -2239,10 +2784,10 @@ class Response(enum.IntEnum):
     """How contacts respond."""
     # Soft contacts: forces grow with the overlap, by the laws above. A time step is a fiftieth of a contact time.
     SPRINGS = 0
-    # Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. The laws above do not act;
-    # restitution, friction and static friction of the materials do, and cohesion and compliance of pairs. Rolling and
-    # spinning friction need Gauss-Seidel; with another solver a step fails. A time step is as long as the flow
-    # allows, 1e-3 s for grains of some millimetres.
+    # Rigid contacts (non-smooth dynamics): impulses prevent overlap. The laws above do not act; restitution, friction
+    # and static friction of the materials do, and cohesion and compliance of pairs. Rolling and spinning friction
+    # need Gauss-Seidel; with another solver a step fails. A time step is as long as the flow allows, 1e-3 s for
+    # grains of some millimetres.
     IMPULSES = 1
 
 
@@ -2255,7 +2800,7 @@ class Cone(enum.IntEnum):
 
 
 class Solver(enum.IntEnum):
-    """The iterative solver for impulses (>>solvers). The page docs/impulses.md compares them."""
+    """The iterative solver for impulses. The page docs/impulses.md compares them."""
     # one contact after another: robust, and needs the fewest sweeps; the default
     GAUSS_SEIDEL = 0
     # all contacts at once; for comparison
@@ -2303,7 +2848,7 @@ class ClusterContacts(enum.IntEnum):
 
 class Search(enum.IntEnum):
     """The broad phase of contact detection. All choices find the same contacts."""
-    # a grid, or a hierarchical grid if radii differ enough; dem_world_report prints the choice
+    # a grid, or a hierarchical grid if radii differ enough; World.report prints the choice
     AUTO = 0
     # every pair; the reference for the others
     ALL_PAIRS = 1
@@ -2377,8 +2922,7 @@ class MotionKind(enum.IntEnum):
 
 class EdgeRule(enum.IntEnum):
     """How the segments of a profile share the force of a grain that touches several."""
-    # The profile acts as one surface, however it is divided (>>facets): a flat one exerts exactly the force of a
-    # plane.
+    # The profile acts as one surface, however it is divided: a flat one exerts exactly the force of a plane.
     RESOLVED = 0
     # [MIL] Fig 5.19: each segment exerts the force along the normal of its own line times a^2 (3 - 2a), where a is
     # its fraction of the chord inside the grain. Only for spheres and clusters, and without law_range.
@@ -2387,8 +2931,8 @@ class EdgeRule(enum.IntEnum):
 
 class SieveKind(enum.IntEnum):
     """The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids and polyhedra with infinite
-    sieves except DEM_SIEVE_REDUCED, polygons with none. Ellipsoids and, with springs, polyhedra on plates without
-    thickness touch facets in their place (>>tessellate).
+    sieves except "reduced", polygons with none. Ellipsoids and, with springs, polyhedra on plates without thickness
+    touch facets in their place.
     """
     NONE = 0
     # a square weave of round wires
@@ -2402,16 +2946,16 @@ class SieveKind(enum.IntEnum):
     # a plate with slots, longer along `along`
     SLOTS = 5
     # [ALK07] 4.3.3: a plane through which a sphere falls without contact if it is near enough to the middle of a
-    # square hole (dem_sieve_desc.model). It is cheaper and never blinds, but the clearance decides what passes.
+    # square hole (SieveDesc.model). It is cheaper and never blinds, but the clearance decides what passes.
     REDUCED = 6
 
 
 class JointKind(enum.IntEnum):
-    """Joints connect a body to another body, to a wall or to space. They need DEM_RESPONSE_IMPULSES and
-    DEM_SOLVER_GAUSS_SEIDEL. After every sweep over the contacts all joints are solved together by a direct method;
-    those of closed loops have a softness of 1e-6 of the inverse effective mass. The joined points and axes coincide
-    in the middle of the next step, where contacts are found, too. Impulses of joints never add energy, for any number
-    of sweeps (docs/impulses.md). Two bodies that are joined have no contact with each other unless `collide` is 1.
+    """Joints connect a body to another body, to a wall or to space. They need "impulses" and "gauss_seidel". After every
+    sweep over the contacts all joints are solved together by a direct method; those of closed loops have a softness
+    of 1e-6 of the inverse effective mass. The joined points and axes coincide in the middle of the next step, where
+    contacts are found, too. Impulses of joints never add energy, for any number of sweeps (docs/impulses.md). Two
+    bodies that are joined have no contact with each other unless `collide` is 1.
     """
     NONE = 0
     # a ball joint: keeps `point` of both together
@@ -2430,7 +2974,7 @@ class Motor(enum.IntEnum):
 
 
 class Severity(enum.IntEnum):
-    """How serious a finding of dem_world_check is."""
+    """How serious a finding of World.check is."""
     # possibly not intended
     NOTE = 1
     # most likely not intended
@@ -2445,7 +2989,7 @@ class EventKind(enum.IntEnum):
     END = 0
     # a contact has begun
     BEGIN = 1
-    # a contact exists: dem_events_open_each
+    # a contact exists: World.events_open_each
     OPEN = 2
 
 
@@ -2453,25 +2997,25 @@ class OutputKind(enum.IntEnum):
     """The action of an output."""
     # calls a function
     CALL = 0
-    # dem_vtp_write
+    # World.vtp_write
     VTP = 1
-    # dem_xyz_write
+    # World.xyz_write
     XYZ = 2
-    # dem_contacts_vtp_write
+    # World.contacts_vtp_write
     CONTACTS = 3
-    # dem_checkpoint_write
+    # World.checkpoint_write
     CHECKPOINT = 4
     # appends the time and some values as a line to a CSV file
     CSV = 5
-    # dem_surfaces_vtp_write
+    # World.surfaces_vtp_write
     SURFACES = 6
-    # dem_walls_vtp_write, from z0 to z1
+    # World.walls_vtp_write, from z0 to z1
     WALLS = 7
-    # dem_bodies_csv_write
+    # World.bodies_csv_write
     BODIES_CSV = 8
-    # dem_contacts_csv_write
+    # World.contacts_csv_write
     CONTACTS_CSV = 9
-    # dem_field_csv_write, of `field`
+    # Field.csv_write, of `field`
     FIELD_CSV = 10
 
 
@@ -2543,9 +3087,9 @@ class Material(Id):
             friction_static=None, rolling_friction=None, stiffness=None, stiffness_ratio=None,
             stiffness_unloading=None, stiffness_adhesion=None):
         """Changes moduli, restitution and friction of a material, also while the world runs. Its pairs are mixed again,
-        except those that dem_pair_set has replaced. Contacts keep their history; a chosen time step is chosen again.
-        The density must stay the same, because bodies have their masses. A checkpoint that is written afterwards can
-        be read only by a world whose material has been changed in the same way.
+        except those that World.pair_set has replaced. Contacts keep their history; a chosen time step is chosen
+        again. The density must stay the same, because bodies have their masses. A checkpoint that is written
+        afterwards can be read only by a world whose material has been changed in the same way.
 
         Fields that are not given stay as they are.
         density: kg/m3, required, > 0
@@ -2563,17 +3107,20 @@ class Material(Id):
         stiffness_unloading: N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness.
         stiffness_adhesion: N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion
         """
-        desc = self.desc
+        desc = _renamed(lambda: self.desc, 'Material.desc', 'Material.set')
         desc._put({name: value for name, value in (('density', density), ('young', young), ('poisson', poisson),
             ('restitution', restitution), ('friction', friction), ('friction_static', friction_static),
             ('rolling_friction', rolling_friction), ('stiffness', stiffness), ('stiffness_ratio', stiffness_ratio),
             ('stiffness_unloading', stiffness_unloading), ('stiffness_adhesion', stiffness_adhesion),) if value is not
-            None})
+            None}, 'Material.set: ')
         self.world._ok(_lib.dem_material_set(self.world._c, self, desc))
 
     @property
     def desc(self):
-        """Writes the present values of a material to desc."""
+        """Returns the present values of a material.
+
+        Returns: MaterialDesc
+        """
         desc = MaterialDesc()
         self.world._ok(_lib.dem_material_get(self.world._c, self, desc))
         self.world._with(desc, 'call Material.set(...), which changes the fields that it is given')
@@ -2592,18 +3139,18 @@ class Wall(Id):
 
     @property
     def reals(self):
-        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
-        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
-        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """The numbers (World(body_reals=...)) of a wall, as a copy. Values must be finite. Laws use them from the next
+        step on. It is an error if the world has no names of such numbers.
+
+        Returns: Row
         """
-        reals = (Real*max(self.world._context.reals, 1))()
+        reals = _row(Real, max(self.world._context.reals, 1))()
         self.world._ok(_lib.dem_wall_reals_get(self.world._c, self, ctypes.cast(reals, ctypes.POINTER(Real))))
         return reals
 
     def reals_set(self, reals):
-        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
-        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
-        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """The numbers (World(body_reals=...)) of a wall: sets them. Values must be finite. Laws use them from the next
+        step on. It is an error if the world has no names of such numbers.
         """
         reals = _array_of(reals, Real, 'Wall.reals_set: reals', 1, self.world._context.reals)
         self.world._ok(_lib.dem_wall_reals_set(self.world._c, self, reals))
@@ -2616,29 +3163,31 @@ class Wall(Id):
         kind: one of "fixed", "translating", "rotating", "oscillating", "user", "table", "servo"
         velocity: m/s, of translating walls; of oscillating ones the direction only; of servo walls the direction in
             which they press, and their largest speed
-        point: m; point and direction of the axis of rotation, to which dem_wall_loads also refers torques; axis 0
-            means along z. Rotating walls need an axis.
+        point: m; point and direction of the axis of rotation, to which WallLoads also refers torques; axis 0 means
+            along z. Rotating walls need an axis.
         speed: rad/s, of rotating walls
-        amplitude: m, Hz, rad: of oscillating walls
+        amplitude: m: of oscillating walls
+        frequency: Hz: of oscillating walls
+        phase: rad: of oscillating walls
         start: s. Until then rotating, translating and servo walls are at rest. A time in the past means now.
-        function: The function of DEM_MOTION_USER. It must not rotate a mesh or profile that spans a period, because
-            the ends stay joined to those of its images: use a table.
-        user: passed to function
+        function: The function of "user". It must not rotate a mesh or profile that spans a period, because the ends
+            stay joined to those of its images: use a table.
         ramp: s, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as 3 u^2 - 2
             u^3, u = (time - start)/ramp, to its full value. 0 means at once.
         load: N, of servo walls: the force with which the wall presses the grains along `velocity`. A table replaces
             it: linear between rows, constant after the last. Servo walls whose motions are equal are one piston and
-            bear the load together. They need DEM_RESPONSE_SPRINGS.
+            bear the load together. They need "springs".
         area: m2, >= 0: load is a stress (Pa) on it; 0 means a force (N)
         travel: m, >= 0, of servo walls: largest distance; 0 means no limit
-        table: The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity and spin
-            are continuous (tangents of the parabola through three rows). The wall is at rest before the first row and
+        table: The rows of "table", at least 2. Between rows the pose is a cubic, so that velocity and spin are
+            continuous (tangents of the parabola through three rows). The wall is at rest before the first row and
             after the last. With table_repeats = 1 the table starts again after its last row, which should equal the
             first. From row to row the wall rotates by less than pi.
         """
-        motion = Motion(kind=kind, velocity=velocity, point=point, axis=axis, speed=speed, amplitude=amplitude,
-            frequency=frequency, phase=phase, start=start, function=function, user=user, ramp=ramp, load=load,
-            area=area, travel=travel, table=table, table_count=table_count, table_repeats=table_repeats)
+        motion = Motion._of_call('Wall.motion_set', dict(kind=kind, velocity=velocity, point=point, axis=axis,
+            speed=speed, amplitude=amplitude, frequency=frequency, phase=phase, start=start, function=function,
+            user=user, ramp=ramp, load=load, area=area, travel=travel, table=table, table_count=table_count,
+            table_repeats=table_repeats))
         motion = self.world._bound(motion, ('dem_wall_motion_set', self))
         self.world._ok(_lib.dem_wall_motion_set(self.world._c, self, motion))
 
@@ -2651,7 +3200,10 @@ class Wall(Id):
 
     @property
     def surface_velocity(self):
-        """Writes the velocity of the surface, in present world axes, to velocity."""
+        """Returns the velocity of the surface, in present world axes.
+
+        Returns: Vec3
+        """
         velocity = Vec3()
         self.world._ok(_lib.dem_wall_surface_velocity_get(self.world._c, self, velocity))
         self.world._with(velocity, 'call Wall.surface_velocity_set(...), which changes the fields that it is given')
@@ -2659,7 +3211,10 @@ class Wall(Id):
 
     @property
     def pose(self):
-        """Writes the present pose of a wall to pose."""
+        """Returns the present pose of a wall.
+
+        Returns: Pose
+        """
         pose = Pose()
         self.world._ok(_lib.dem_wall_pose_get(self.world._c, self, pose))
         self.world._with(pose)
@@ -2671,7 +3226,10 @@ class Wall(Id):
 
     @property
     def loads(self):
-        """Writes the loads of a wall to loads."""
+        """Returns the loads of a wall.
+
+        Returns: WallLoads
+        """
         loads = WallLoads()
         self.world._ok(_lib.dem_wall_loads_get(self.world._c, self, loads))
         self.world._with(loads)
@@ -2685,6 +3243,8 @@ class Wall(Id):
         """Computes the wear of a wall by Archard's law: the worn volume is the work of sliding times a dimensionless
         coefficient, over the hardness (Pa, > 0) of the softer side. coefficient: >= 0, that of Archard (per normal
         force and distance) divided by the coefficient of friction.
+
+        Returns: Wear
         """
         wear = Wear()
         self.world._ok(_lib.dem_wall_wear_get(self.world._c, self, coefficient, hardness, wear))
@@ -2693,20 +3253,23 @@ class Wall(Id):
 
     @property
     def wear_facets(self):
-        """Writes the work of sliding on each facet (mesh) or segment (profile) of a wall, J, in the order of its
-        elements, at most `capacity` of them, and returns their number (0: the wall has no facets). The work counts
-        for the facet that is nearest to the contact point. work: or null. Returns -1 if contacts are not recorded.
+        """Returns the work of sliding on each facet (mesh) or segment (profile) of a wall, J, in the order of its
+        elements. The work counts for the facet that is nearest to the contact point. It is an error if contacts are
+        not recorded.
         """
         capacity = self.world._number(_lib.dem_wall_wear_facets_get(self.world._c, self, None, 0))
-        work = (ctypes.c_double*max(capacity, 1))()
+        work = _row(ctypes.c_double, max(capacity, 1))()
         count = self.world._number(_lib.dem_wall_wear_facets_get(self.world._c, self, ctypes.cast(work,
             ctypes.POINTER(ctypes.c_double)), capacity))
-        array = (work._type_*count).from_buffer(work)
+        array = _row(work._type_, count).from_buffer(work)
         return array
 
     @property
     def servo(self):
-        """Writes the state of a servo wall to servo."""
+        """Returns the state of a servo wall.
+
+        Returns: Servo
+        """
         servo = Servo()
         self.world._ok(_lib.dem_wall_servo_get(self.world._c, self, servo))
         self.world._with(servo)
@@ -2732,14 +3295,20 @@ class Field(Id):
 
     @property
     def data(self):
-        """Writes pointers to the sums of a field to `data`."""
+        """Returns views of the sums of a field.
+
+        Returns: FieldData
+        """
         data = FieldData()
         self.world._ok(_lib.dem_field_get(self.world._c, self, data))
         self.world._with(data)
         return data
 
     def cell(self, i, j, k):
-        """Computes the means of the cell (i, j, k), which count from 0."""
+        """Computes the means of the cell (i, j, k), which count from 0.
+
+        Returns: FieldCell
+        """
         cell = FieldCell()
         self.world._ok(_lib.dem_field_cell_get(self.world._c, self, i, j, k, cell))
         self.world._with(cell)
@@ -2750,7 +3319,7 @@ class Field(Id):
         self.world._ok(_lib.dem_field_reset(self.world._c, self))
 
     def csv_write(self, path):
-        """Writes the cells of a field: centre (m) and what dem_field_cell_get returns."""
+        """Writes the cells of a field: centre (m) and what Field.cell returns."""
         self.world._ok(_lib.dem_field_csv_write(self.world._c, self, _text_of(path, 'Field.csv_write: path')))
 
 
@@ -2773,7 +3342,10 @@ class Shape(Id):
 
     @property
     def info(self):
-        """Writes the properties of a shape to info."""
+        """Returns the properties of a shape.
+
+        Returns: ShapeInfo
+        """
         info = ShapeInfo()
         self.world._ok(_lib.dem_shape_get(self.world._c, self, info))
         self.world._with(info)
@@ -2795,71 +3367,79 @@ class Body(Id):
 
     @property
     def state(self):
-        """Writes the state of a body to state."""
+        """Returns the state of a body.
+
+        Returns: BodyState
+        """
         state = BodyState()
         self.world._ok(_lib.dem_body_get(self.world._c, self, state))
         self.world._with(state, 'call Body.set(...), which changes the fields that it is given')
         return state
 
     def set(self, *, position=None, velocity=None, spin=None, fixed=None, orientation=None):
-        """Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. A body on a rail keeps its
+        """Sets position, velocity, spin, orientation and fixed. Start from Body.state. A body on a rail keeps its
         velocity and spin along and about locked axes.
 
         Fields that are not given stay as they are.
-        position: m, m/s, rad/s
+        position: m
+        velocity: m/s
+        spin: rad/s
         fixed: 1: the body never moves, whatever forces act on it
-        orientation: Rotates the frame in which the shape was given into the world. dem_body_set accepts any length
-            but 0. Spheres have one if desc.orientations is 1.
+        orientation: Rotates the frame in which the shape was given into the world. Body.set accepts any length but 0.
+            Spheres have one if desc.orientations is 1.
         """
-        state = self.state
+        state = _renamed(lambda: self.state, 'Body.state', 'Body.set')
         state._put({name: value for name, value in (('position', position), ('velocity', velocity), ('spin', spin),
-            ('fixed', fixed), ('orientation', orientation),) if value is not None})
+            ('fixed', fixed), ('orientation', orientation),) if value is not None}, 'Body.set: ')
         state = self.world._bound(state, ('dem_body_set', self))
         self.world._ok(_lib.dem_body_set(self.world._c, self, state))
 
     def radius_set(self, radius):
-        """Sets the radius of a body, m, > 0 (dem_body_state.radius; all lengths of its shape scale with it). Mass and
-        moments of inertia follow from the density of the material. Velocity, spin and contacts with their history
-        stay. The next step checks the time step, or chooses it again. The ledger counts the kinetic energy of the new
-        mass as `inserted`, and what springs gain as `growth`. See desc.growth for radii that change all the time.
+        """Sets the radius of a body, m, > 0 (BodyState.radius; all lengths of its shape scale with it). Mass and moments
+        of inertia follow from the density of the material. Velocity, spin and contacts with their history stay. The
+        next step checks the time step, or chooses it again. The ledger counts the kinetic energy of the new mass as
+        `inserted`, and what springs gain as `growth`. See desc.growth for radii that change all the time.
         """
         self.world._ok(_lib.dem_body_radius_set(self.world._c, self, radius))
 
     @property
     def reals(self):
-        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
-        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
-        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """The numbers (World(body_reals=...)) of a body, as a copy. Values must be finite. Laws use them from the next
+        step on. It is an error if the world has no names of such numbers.
+
+        Returns: Row
         """
-        reals = (Real*max(self.world._context.reals, 1))()
+        reals = _row(Real, max(self.world._context.reals, 1))()
         self.world._ok(_lib.dem_body_reals_get(self.world._c, self, ctypes.cast(reals, ctypes.POINTER(Real))))
         return reals
 
     def reals_set(self, reals):
-        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
-        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
-        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """The numbers (World(body_reals=...)) of a body: sets them. Values must be finite. Laws use them from the next
+        step on. It is an error if the world has no names of such numbers.
         """
         reals = _array_of(reals, Real, 'Body.reals_set: reals', 1, self.world._context.reals)
         self.world._ok(_lib.dem_body_reals_set(self.world._c, self, reals))
 
     def rail_set(self, *, axes=0, velocity=None, spin=None, wall=None):
         """Puts a body on a rail, changes its rail, or takes it off (axes 0). Its velocity and spin along locked axes
-        become the prescribed ones at once. The forces and torques of dem_body_get include those of the rail.
+        become the prescribed ones at once. The forces and torques of Body.state include those of the rail.
 
-        axes: 0 to 63: sum of DEM_RAIL_ constants; 0 means no rail
+        axes: 0 to 63: sum of dem.RAIL_ constants; 0 means no rail
         velocity: m/s, along locked axes
         spin: rad/s, about locked axes
         wall: Along and about locked axes the body also follows the pose of this wall, as if it were part of it, so
-            any motion of a wall is a path for a body. Null means none, as after the removal of the wall.
+            any motion of a wall is a path for a body. None means none, as after the removal of the wall.
         """
-        desc = RailDesc(axes=axes, velocity=velocity, spin=spin, wall=wall)
+        desc = RailDesc._of_call('Body.rail_set', dict(axes=axes, velocity=velocity, spin=spin, wall=wall))
         desc = self.world._bound(desc, ('dem_body_rail_set', self))
         self.world._ok(_lib.dem_body_rail_set(self.world._c, self, desc))
 
     @property
     def reaction(self):
-        """Writes the state of a body's rail to state. It is an error if the body has none."""
+        """Returns the state of a body's rail. It is an error if the body has none.
+
+        Returns: RailState
+        """
         state = RailState()
         self.world._ok(_lib.dem_body_reaction_get(self.world._c, self, state))
         self.world._with(state)
@@ -2867,7 +3447,10 @@ class Body(Id):
 
     @property
     def means(self):
-        """Writes the averages of a grain to means. An error if no field averages bodies."""
+        """Returns the averages of a grain. An error if no field averages bodies.
+
+        Returns: BodyMeans
+        """
         means = BodyMeans()
         self.world._ok(_lib.dem_body_means_get(self.world._c, self, means))
         self.world._with(means)
@@ -2879,7 +3462,7 @@ class ContactWho(Struct):
     """The two bodies of a contact, for laws that request them by desc.law_who = 1."""
     c_name = 'dem_contact_who'
     rows = [
-        ('a', Body, "b is the null id at a wall; c->wall is then the wall's id"),
+        ('a', Body, "b is the id 0 at a wall; c.wall is then the wall's id"),
         ('b', Body, ""),
         ('radius_a', Real,
          'm, of the spheres that touch (member spheres of clusters); of other shapes the bounding radius; 0 '
@@ -2891,11 +3474,11 @@ class ContactWho(Struct):
         ('time', ctypes.c_double, 's, at the end of the step'),
         ('reals_a', ctypes.POINTER(Real),
          'present values of the user-defined numbers of a and of b or the wall, in the order of '
-         'desc.body_reals; null if desc.body_reals names none'),
+         'desc.body_reals; None if desc.body_reals names none'),
         ('reals_b', ctypes.POINTER(Real), ""),
         ('rate_a', ctypes.POINTER(Real),
          'The law adds the rates of change of these numbers here, per s. They are 0 when the law is called; '
-         'the pointers are null if reals_a is. If a contact has several contact points (member spheres of '
+         'the pointers are None if reals_a is. If a contact has several contact points (member spheres of '
          'clusters, facets), dem.h multiplies the rates of each by its weight'),
         ('rate_b', ctypes.POINTER(Real), ""),
     ]
@@ -2925,23 +3508,24 @@ class Contact(Struct):
          'the contact point accelerates, rotation included'),
         ('dt', Real, 's, the time step. 0: leave the contact history unchanged'),
         ('kn', Real,
-         'At ellipsoids, polyhedra and polygons kn, cn, kun and kad are multiplied by s, the derivative of the'
-         ' overlap with respect to the approach, and the ledger divides `elastic` and `sag` by s. The ledger '
-         'closes if the normal force is proportional to these; with other forces, for example a constant '
-         'attraction, only while s is constant: not at corners and edges.'),
+         'built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others). At ellipsoids, polyhedra and '
+         'polygons kn, cn, kun and kad are multiplied by s, the derivative of the overlap with respect to the '
+         'approach, and the ledger divides `elastic` and `sag` by s. The ledger closes if the normal force is '
+         'proportional to these; with other forces, for example a constant attraction, only while s is '
+         'constant: not at corners and edges.'),
         ('cn', Real, ""),
         ('kt', Real, 'built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others)'),
         ('ct', Real, ""),
-        ('kun', Real, ""),
+        ('kun', Real, 'N/m, unloading of the hysteretic law; otherwise 0'),
         ('friction', Real, 'of the pair of materials'),
         ('friction_static', Real, ""),
         ('rolling_friction', Real, ""),
         ('spinning_friction', Real, ""),
-        ('sliding', Real, 'force->sliding of the last step; 0 when the contact begins'),
+        ('sliding', Real, 'force.sliding of the last step; 0 when the contact begins'),
         ('material_a', ctypes.c_int32, 'ids of materials'),
         ('material_b', ctypes.c_int32, ""),
         ('wall', ctypes.c_int32, 'id of the wall; 0: b is a body'),
-        ('tension', ctypes.c_int, 'dem_tension, dem_load, dem_slider of the world desc'),
+        ('tension', ctypes.c_int, 'Tension, Load, Slider of the world desc'),
         ('friction_load', ctypes.c_int, ""),
         ('slider', ctypes.c_int, ""),
         ('who', ContactWho, 'zeros unless desc.law_who is 1'),
@@ -2955,8 +3539,8 @@ class ContactEnergy(Struct):
     """The energies of one contact, J. Losses and work are those of the step."""
     c_name = 'dem_contact_energy'
     rows = [
-        ('dashpot', Real, 'lost to the normal dashpot; to hysteresis (dt 0: next step)'),
-        ('sag', Real, ""),
+        ('dashpot', Real, 'lost to the normal dashpot'),
+        ('sag', Real, 'lost to hysteresis (dt 0: next step)'),
         ('elastic', Real, 'stored in the normal spring now'),
         ('shear_work', Real, 'work done against the tangential force'),
         ('slide', Real, 'lost to sliding'),
@@ -2974,19 +3558,19 @@ class ContactForce(Struct):
         ('tangent', Vec3, 'N, on a at the contact point; b receives the opposite'),
         ('moment', Vec3, 'N m, on a (rolling resistance); b receives the opposite'),
         ('elastic', Real,
-         'From here to ct: what a normal law passes to the friction and rolling laws that follow it. A law '
-         'that calls none of these may leave them at 0.'),
-        ('load', Real, 'N, the part of `normal` that the spring exerts'),
-        ('slope', Real,
-         'N/m, d(elastic)/d(overlap): at the present overlap; and at the overlap in the middle of that part of'
-         ' the step in which the two touched. Hysteretic law: kn'),
-        ('slope_step', Real, ""),
+         'N, the part of `normal` that the spring exerts. From here to ct: what a normal law passes to the '
+         'friction and rolling laws that follow it. A law that calls none of these may leave them at 0.'),
+        ('load', Real, "N, >= 0: L of Coulomb's limit mu L"),
+        ('slope', Real, 'N/m, d(elastic)/d(overlap): at the present overlap'),
+        ('slope_step', Real,
+         'N/m, d(elastic)/d(overlap): at the overlap in the middle of that part of the step in which the two '
+         'touched. Hysteretic law: kn'),
         ('kt', Real, 'N/m, tangential stiffness: likewise'),
         ('kt_step', Real, ""),
         ('ct', Real, 'N s/m, tangential dashpot'),
         ('sliding', Real,
          '1 while the contact slides, otherwise 0. The friction laws set it. If friction_static is larger than'
-         ' friction for any pair, contact history keeps it and c->sliding returns it'),
+         ' friction for any pair, contact history keeps it and c.sliding returns it'),
         ('energy', ContactEnergy, 'for the ledger, which cannot know what a law leaves at 0'),
     ]
 
@@ -3021,7 +3605,7 @@ AllocatorFreeFn.__doc__ = ''
 
 @_struct
 class Allocator(Struct):
-    """Memory functions of a world. Give both or neither (malloc and free). alloc_fn returns null if there is no memory;
+    """Memory functions of a world. Give both or neither (malloc and free). alloc_fn returns None if there is no memory;
     free_fn receives the size that was requested. One world, or one set of slabs, calls them from one thread at a
     time.
     """
@@ -3035,10 +3619,10 @@ class Allocator(Struct):
 
 @_struct
 class ContactRows(Struct):
-    """A row of contacts in columns: c->overlap[q] is the overlap of contact q, c->normal[1][q] the y of its normal. The
-    fields and their units are those of dem_contact, then those of dem_contact_force, which the law must set for every
-    q below `count`. Some contacts of a row are not in touch, and the last group is padded: dem.h ignores what the law
-    returns for these, and clears their history.
+    """A row of contacts in columns: c.overlap[q] is the overlap of contact q, c.normal[1][q] the y of its normal. The
+    fields and their units are those of Contact, then those of ContactForce, which the law must set for every q below
+    `count`. Some contacts of a row are not in touch, and the last group is padded: dem.h ignores what the law returns
+    for these, and clears their history.
     """
     c_name = 'dem_contact_rows'
     counts = {'count': (('touch', 1),), 'memory_count': (('memory', 1),)}
@@ -3077,21 +3661,21 @@ class ContactRows(Struct):
         ('slider', ctypes.c_int, ''),
         ('user', ctypes.c_void_p, ''),
         ('memory', ctypes.POINTER(Real)*LAW_MEMORY, 'contact history: memory[k][q]'),
-        ('normal_force', ctypes.POINTER(Real), 'slides: force->sliding'),
+        ('normal_force', ctypes.POINTER(Real), 'slides: force.sliding'),
         ('tangent', ctypes.POINTER(Real)*3, ""),
         ('moment', ctypes.POINTER(Real)*3, ""),
         ('slides', ctypes.POINTER(Real), ""),
-        ('energy', ctypes.POINTER(Real)*7,
-         'in the order of dem_contact_energy; all null if the world keeps no ledger'),
+        ('energy', ctypes.POINTER(Real)*7, 'in the order of ContactEnergy; all None if the world keeps no ledger'),
     ]
 
 
 def _wrap_dem_law_fn(function, context, struct):
     memory_type = _history(context.memory, context.vectors)
+    c_of = _read(Contact).from_address
 
     def call(c, memory, force):
         try:
-            _c = Contact.from_address(c)
+            _c = c_of(c)
             _memory = memory_type.from_address(memory) if memory else memory_type()
             _force = ContactForce.from_address(force)
             result = function(_c, _memory, _force)
@@ -3104,20 +3688,21 @@ def _wrap_dem_law_fn(function, context, struct):
             if _refs(_force) > _ONE and _held(_force):
                 raise _kept('force')
         except BaseException as error:
-            context.fail(error)
+            context.fail(_beyond(error, 'law', memory=memory_type) if type(error) is IndexError else error)
             Real.from_address(force).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), LawFn.c)
 
 
 LawFn = Function(_wrap_dem_law_fn, None, ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce))
-LawFn.__doc__ = 'A contact law: computes *force from *c. `memory` is the contact history: desc.law_memory reals. They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer than the range. A law with a range decides itself when a bond or bridge begins and ends, and stores that in its history. If c->dt is 0, dem.h only asks for the force: leave `memory` unchanged. The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put tangential springs there, and scalars after them. A law must use nothing except its arguments and c->user. Several threads call it at once.'
+LawFn.__doc__ = 'A contact law: computes *force from *c. `memory` is the contact history: desc.law_memory reals. They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer than the range. A law with a range decides itself when a bond or bridge begins and ends, and stores that in its history. If c.dt is 0, dem.h only asks for the force: leave `memory` unchanged. The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put tangential springs there, and scalars after them. A law must use nothing except its arguments and c.user. Several threads call it at once.'
 
 
 def _wrap_dem_law_rows_fn(function, context, struct):
+    rows_of = _read(ContactRows).from_address
 
     def call(rows):
         try:
-            _rows = ContactRows.from_address(rows)
+            _rows = rows_of(rows)
             result = function(_rows)
             if result is not None:
                 raise _returned(result, 'law_rows')
@@ -3129,15 +3714,16 @@ def _wrap_dem_law_rows_fn(function, context, struct):
 
 
 LawRowsFn = Function(_wrap_dem_law_rows_fn, None, ctypes.POINTER(ContactRows))
-LawRowsFn.__doc__ = 'A law that computes the forces of a row of contacts: see dem_world_desc.law_rows.'
+LawRowsFn.__doc__ = 'A law that computes the forces of a row of contacts: see WorldDesc.law_rows.'
 
 
 def _wrap_dem_law_rate_fn(function, context, struct):
     rates_type = Real*2
+    c_of = _read(Contact).from_address
 
     def call(c, rates):
         try:
-            _c = Contact.from_address(c)
+            _c = c_of(c)
             _rates = rates_type.from_address(rates) if rates else rates_type()
             result = function(_c, _rates)
             if result is not None:
@@ -3147,7 +3733,7 @@ def _wrap_dem_law_rate_fn(function, context, struct):
             if _refs(_rates) > _ONE and _held(_rates):
                 raise _kept('rates')
         except BaseException as error:
-            context.fail(error)
+            context.fail(_beyond(error, 'law_rate', rates=rates_type) if type(error) is IndexError else error)
             Real.from_address(rates).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(call), LawRateFn.c)
 
@@ -3158,41 +3744,46 @@ LawRateFn.__doc__ = 'For laws that change user-defined numbers (law_who): bounds
 
 @_struct
 class BodyState(Struct):
-    """The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and ignores the rest;
-    dem_body_radius_set sets the radius.
+    """The state of a body. Body.set uses position, velocity, spin, orientation and fixed and ignores the rest;
+    Body.radius_set sets the radius.
     """
     c_name = 'dem_body_state'
     rows = [
-        ('position', Vec3, 'm, m/s, rad/s'),
-        ('velocity', Vec3, ""),
-        ('spin', Vec3, ""),
-        ('force', Vec3, 'N, N m: of the last step, without gravity'),
-        ('torque', Vec3, ""),
+        ('position', Vec3, 'm'),
+        ('velocity', Vec3, 'm/s'),
+        ('spin', Vec3, 'rad/s'),
+        ('force', Vec3, 'N: of the last step, without gravity'),
+        ('torque', Vec3, 'N m: of the last step, without gravity'),
         ('radius', Real,
-         'm, kg, kg m2. For a body that is not a sphere: the radius of its bounding sphere and the smallest '
-         'principal moment.'),
-        ('mass', Real, ""),
-        ('inertia', Real, ""),
+         'm. For a body that is not a sphere: the radius of its bounding sphere and the smallest principal '
+         'moment.'),
+        ('mass', Real,
+         'kg. For a body that is not a sphere: the radius of its bounding sphere and the smallest principal '
+         'moment.'),
+        ('inertia', Real,
+         'kg m2. For a body that is not a sphere: the radius of its bounding sphere and the smallest principal'
+         ' moment.'),
         ('material', Material, ''),
         ('fixed', ctypes.c_int, '1: the body never moves, whatever forces act on it'),
         ('orientation', Quat,
-         'Rotates the frame in which the shape was given into the world. dem_body_set accepts any length but '
-         '0. Spheres have one if desc.orientations is 1.'),
+         'Rotates the frame in which the shape was given into the world. Body.set accepts any length but 0. '
+         'Spheres have one if desc.orientations is 1.'),
         ('shape', Shape, 'id 0 for a sphere'),
         ('moments', Vec3, 'kg m2, about the principal axes'),
-        ('reals', ctypes.POINTER(Real), 'desc.body_reals, valid until the next step; null: none'),
+        ('reals', ctypes.POINTER(Real), 'desc.body_reals, valid until the next step; None: none'),
     ]
 
 
 def _wrap_dem_reals_fn(function, context, struct):
     reals_type = Real*context.reals
-    rates_type = Real*context.reals
+    rates_type = _row_read(Real, context.reals)
+    body_of = _read(BodyState).from_address
 
     def call(reals, rates, body, id, time, dt, user):
         try:
             _reals = reals_type.from_address(reals) if reals else reals_type()
             _rates = rates_type.from_address(rates) if rates else rates_type()
-            _body = BodyState.from_address(body)
+            _body = body_of(body)
             result = function(_reals, _rates, _body, id, time, dt)
             if result is not None:
                 raise _returned(result, 'reals')
@@ -3203,7 +3794,7 @@ def _wrap_dem_reals_fn(function, context, struct):
             if _refs(_body) > _ONE and _held(_body):
                 raise _kept('body')
         except BaseException as error:
-            context.fail(error)
+            context.fail(_beyond(error, 'reals', reals=reals_type, rates=rates_type) if type(error) is IndexError else error)
             Real.from_address(reals).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, Body, ctypes.c_double, Real, ctypes.c_void_p)(call), RealsFn.c)
 
@@ -3213,10 +3804,11 @@ RealsFn.__doc__ = "Advances the user-defined numbers of a body by one step, in p
 
 
 def _wrap_dem_growth_fn(function, context, struct):
+    body_of = _read(BodyState).from_address
 
     def call(body, id, time, user):
         try:
-            _body = BodyState.from_address(body)
+            _body = body_of(body)
             result = _real_from(function(_body, id, time), 'growth')
             if _refs(_body) > _ONE and _held(_body):
                 raise _kept('body')
@@ -3232,14 +3824,15 @@ GrowthFn.__doc__ = 'Returns the rate of the radius of a body, m/s (desc.growth):
 
 
 ForceFn = Function(None, ctypes.c_void_p)
-ForceFn.__doc__ = 'A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m) and mass (kg) at a time (s). With impulses position, velocity and time are those of the middle of the coming step. It is called once per body and step, and again whenever forces are computed without a step (after a change of the scene, by dem_contacts_each, by the report), from several threads.'
+ForceFn.__doc__ = 'A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m) and mass (kg) at a time (s). With impulses position, velocity and time are those of the middle of the coming step. It is called once per body and step, and again whenever forces are computed without a step (after a change of the scene, by World.contacts_each, by the report), from several threads.'
 
 
 def _wrap_dem_body_force_fn(function, context, struct):
+    body_of = _read(BodyState).from_address
 
     def call(body, id, time, force, torque, user):
         try:
-            _body = BodyState.from_address(body)
+            _body = body_of(body)
             _force = Vec3.from_address(force)
             _torque = Vec3.from_address(torque)
             result = function(_body, id, time, _force, _torque)
@@ -3258,12 +3851,12 @@ def _wrap_dem_body_force_fn(function, context, struct):
 
 
 BodyForceFn = Function(_wrap_dem_body_force_fn, None, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.POINTER(Vec3), ctypes.POINTER(Vec3), ctypes.c_void_p)
-BodyForceFn.__doc__ = 'A force field that sees the whole body and may exert a torque. It adds to *force (N) and *torque (N m, about the centre of mass, in the world frame), which are 0 when it is called. *body is the state as dem_body_get returns it; spheres have an orientation only with desc.orientations. time: s. id: the body, to find your own data by its slot. Otherwise as dem_force_fn.'
+BodyForceFn.__doc__ = 'A force field that sees the whole body and may exert a torque. It adds to *force (N) and *torque (N m, about the centre of mass, in the world frame), which are 0 when it is called. *body is the state as Body.state returns it; spheres have an orientation only with desc.orientations. time: s. id: the body, to find your own data by its slot. Otherwise as ForceFn.'
 
 
 @_struct
 class WorldDesc(Struct):
-    """The description of a world. dem_world_create_error_get checks it."""
+    """The description of a world. dem.world_create_error checks it."""
     c_name = 'dem_world_desc'
     rows = [
         ('gravity', Vec3, 'm/s2'),
@@ -3282,55 +3875,55 @@ class WorldDesc(Struct):
         ('friction_load', Load, ''),
         ('slider', Slider, ''),
         ('convention', Convention, ''),
-        ('law', LawFn, 'replaces the normal, tangential and rolling law; null means the laws above'),
+        ('law', LawFn, 'replaces the normal, tangential and rolling law; None means the laws above'),
         ('law_rows', LawRowsFn,
          'The same law for rows of contacts of spheres, which is faster: DEM_LAW_ROWS defines it. It must '
-         'return what law returns; dem.h uses whichever suits. It needs law. Null means that law is called for'
+         'return what law returns; dem.h uses whichever suits. It needs law. None means that law is called for'
          ' each contact, as it always is with law_who.'),
-        ('law_user', ctypes.c_void_p, 'passed to law as c->user'),
+        ('law_user', ctypes.c_void_p, 'passed to law as c.user'),
         ('law_memory', ctypes.c_int, 'reals of contact history per contact, 0 to 16'),
         ('law_memory_names', str,
-         'Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means memory0, '
+         'Names of these reals for World.contacts_vtp_write, written as in body_reals. None means memory0, '
          'memory1 and so on.'),
         ('law_vectors', ctypes.c_int, 'leading triples of them that are vectors, 0 to law_memory/3'),
         ('law_stiffness', Real,
          'N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the built-in law.'),
         ('law_range', Real,
          'm, >= 0. law is also called for two bodies that do not touch while their gap is below law_range + '
-         'law_range_radii (Ra + Rb), with c->overlap < 0. A wall counts with radius 0, an ellipsoid with its '
+         'law_range_radii (Ra + Rb), with c.overlap < 0. A wall counts with radius 0, an ellipsoid with its '
          'bounding sphere. Built-in laws that it calls need overlap > 0. 0 means no range. With both 0, law is'
          ' called in contact only, at no extra cost.'),
         ('law_range_radii', Real, '>= 0; see law_range; 0 means no such range'),
-        ('law_who', ctypes.c_int, '1 fills in c->who: ids, radii, masses, contact point, time'),
+        ('law_who', ctypes.c_int, '1 fills in c.who: ids, radii, masses, contact point, time'),
         ('law_rate', LawRateFn,
          'Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who and '
          'body_reals. It is called before the first step and at least once in eight steps. A given dt above '
-         'the stable limit is an error; a chosen dt is at most half of it. Null means that these rates do not '
+         'the stable limit is an error; a chosen dt is at most half of it. None means that these rates do not '
          'limit dt.'),
         ('body_reals', str,
          'Names of numbers that every body and wall carries, such as "temperature charge": at most 8 words of '
          'up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With law_who, law '
-         'reads them and returns their rates (per s). Null means no numbers.'),
+         'reads them and returns their rates (per s). None means no numbers.'),
         ('body_reals_fn', RealsFn,
-         'Updates the numbers of a body after each step. Null means that each grows by rate dt. Numbers of '
-         'walls stay as set; dem_wall_loads sums what they would gain.'),
+         'Updates the numbers of a body after each step. None means that each grows by rate dt. Numbers of '
+         'walls stay as set; WallLoads sums what they would gain.'),
         ('body_reals_user', ctypes.c_void_p, 'passed to body_reals_fn'),
         ('growth', GrowthFn,
          'Returns the rate of the radius of a body, m/s: > 0 grows, < 0 wears. Mass follows at constant '
          'density, velocity and contact history stay. Each change of radii costs a new list and another '
-         'computation of forces. Null means constant radii; see dem_body_radius_set.'),
+         'computation of forces. None means constant radii; see Body.radius_set.'),
         ('growth_user', ctypes.c_void_p, 'passed to growth'),
         ('growth_interval', Real,
          's, between two changes of radii; 0 means every step. A body that was added within an interval grows '
          'for all of it. In single precision changes below 6e-8 of a radius are lost: take a longer interval'),
         ('groups', str,
          'Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters, digits and '
-         '_. A body belongs to none until dem_bodies_group_set. Null means no groups.'),
-        ('force', ForceFn, 'force on a body; null means none'),
-        ('body_force', BodyForceFn, 'force and torque on a body; null means none'),
+         '_. A body belongs to none until World.bodies_group_set. None means no groups.'),
+        ('force', ForceFn, 'force on a body; None means none'),
+        ('body_force', BodyForceFn, 'force and torque on a body; None means none'),
         ('force_user', ctypes.c_void_p, 'passed to both'),
         ('integrator', Integrator, ''),
-        ('dt', Real, 's, the time step; 0 means chosen from the scene, see dem_step_advice_get'),
+        ('dt', Real, 's, the time step; 0 means chosen from the scene, see World.step_advice'),
         ('allow_large_dt', ctypes.c_int,
          '1 allows dt above the stable limit, to show what happens then. It switches off all checks of the '
          'step: of contacts, speeds, walls and law_rate; a chosen dt is not shortened either.'),
@@ -3339,12 +3932,12 @@ class WorldDesc(Struct):
          "Young's modulus depend on it. 0 means the largest speed expected from grains, walls and height of "
          'fall for the time step, and 1 m/s for the stiffness.'),
         ('response', Response,
-         'DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order (docs/impulses.md) '
-         'for either value of integrator that it accepts, 0 and DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m)'
-         ' is then the gap below which contacts are solved. If it is 0, dem.h takes three times the distance '
-         'that the fastest body moves in a step, at most the largest radius R and at least 0.1 R. On a '
-         'periodic axis of length P it is at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but '
-         'still at least 0.1 R. The fields that follow apply to impulses only.'),
+         '"impulses" needs dt > 0 and law None. Its steps are of second order (docs/impulses.md) for either '
+         'value of integrator that it accepts, 0 and "symplectic_euler". law_range (m) is then the gap below '
+         'which contacts are solved. If it is 0, dem.h takes three times the distance that the fastest body '
+         'moves in a step, at most the largest radius R and at least 0.1 R. On a periodic axis of length P it '
+         'is at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R. The '
+         'fields that follow apply to impulses only.'),
         ('cone', Cone, ''),
         ('solver', Solver, ''),
         ('sweeps', ctypes.c_int, 'most sweeps over all contacts in a step; 0 means 200'),
@@ -3354,8 +3947,8 @@ class WorldDesc(Struct):
          'below 30 times that.'),
         ('cold_start', ctypes.c_int, '1 begins with zero impulses, not those of the last step'),
         ('unsolved_stops', ctypes.c_int,
-         '1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance. With 0 '
-         'it continues; dem_counters_get, the report and dem_progress_print count such steps.'),
+         '1 ends the run with StoppedError after a step whose sweeps did not reach the tolerance. With 0 it '
+         'continues; World.counters, the report and World.progress_print count such steps.'),
         ('search', Search, ''),
         ('skin', Real,
          'm, margin of the neighbour list; 0 means chosen for speed; < 0 means none: the list is rebuilt in '
@@ -3365,10 +3958,10 @@ class WorldDesc(Struct):
         ('cluster_contacts', ClusterContacts, ''),
         ('orientations', ctypes.c_int, '1 follows the orientations of spheres too'),
         ('overlap_stop', Real,
-         '0 to 1, in radii (see dem_counters.overlap_max): a step after which an overlap is larger ends the '
-         'run with DEM_ERROR_STOPPED, because grains are jammed or too soft. 0 means off. The report and '
-         'dem_progress_print name an overlap above 0.05.'),
-        ('ledger', ctypes.c_int, '1 accounts for energy, see dem_ledger_get'),
+         '0 to 1, in radii (see Counters.overlap_max): a step after which an overlap is larger ends the run '
+         'with StoppedError, because grains are jammed or too soft. 0 means off. The report and '
+         'World.progress_print name an overlap above 0.05.'),
+        ('ledger', ctypes.c_int, '1 accounts for energy, see World.ledger'),
         ('threads', ctypes.c_int,
          'Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are used '
          'while that is faster; results are the same.'),
@@ -3404,7 +3997,7 @@ class MaterialDesc(Struct):
 
 @_struct
 class Pair(Struct):
-    """The contact properties of two materials. Unless dem_pair_set sets them, they are mixed from the materials, for
+    """The contact properties of two materials. Unless World.pair_set sets them, they are mixed from the materials, for
     walls as for grains: - restitution, the three friction coefficients and stiffness_adhesion by the geometric mean:
     a coefficient that is 0 in one of the two is 0 in the pair (friction_static 0 means friction); - moduli in series
     as for Hertz, 1/E* = sum (1 - nu^2)/E and 1/G* = sum (2 - nu)/G; - stiffness by the mean 2 ka kb/(ka + kb) if both
@@ -3429,7 +4022,7 @@ class Pair(Struct):
          '(linear) or none (hysteretic)'),
         ('spinning_friction', Real,
          'mu_spin, >= 0: twisting friction, a moment about the normal up to mu_spin R* Fn; 0 when mixed. With '
-         'springs: dem_law_twist.'),
+         'springs: dem.law_twist.'),
         ('cohesion', Real,
          'N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of the '
          'smaller radius.'),
@@ -3449,15 +4042,14 @@ class Coefficients(Struct):
     """The coefficients of the built-in laws for two spheres."""
     c_name = 'dem_coefficients'
     rows = [
-        ('r_eff', Real, 'm, kg: effective radius and mass'),
-        ('m_eff', Real, ""),
-        ('kn', Real, 'see dem_contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v'),
+        ('r_eff', Real, 'm: effective radius and mass'),
+        ('m_eff', Real, 'kg: effective radius and mass'),
+        ('kn', Real, 'see Contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v'),
         ('cn', Real, ""),
         ('kt', Real, ""),
         ('ct', Real, ""),
         ('kun', Real, 'N/m, hysteretic law; otherwise 0'),
-        ('damping_ratio', Real,
-         'beta = -ln e / sqrt(pi^2 + ln^2 e); larger with DEM_TENSION_COMPENSATED; 0 with impulses'),
+        ('damping_ratio', Real, 'beta = -ln e / sqrt(pi^2 + ln^2 e); larger with "compensated"; 0 with impulses'),
         ('contact_time', Real, 's, at the impact speed; hysteretic law: [ALK07] eq 2.45'),
         ('kad', Real, 'kad'),
     ]
@@ -3491,7 +4083,7 @@ class Region(Struct):
          "'x', 'y' or 'z' restricts the region to the cylinder inscribed in the box along that axis, elliptic "
          'if the box is not square. Centres then lie in an ellipse whose half axes are smaller by the radius. '
          '0 means the whole box.'),
-        ('inside', InsideFn, 'restricts the region further; null means no restriction'),
+        ('inside', InsideFn, 'restricts the region further; None means no restriction'),
         ('user', ctypes.c_void_p, 'passed to inside'),
     ]
 
@@ -3537,37 +4129,37 @@ class Bodies(Struct):
         ('forces', View(Real, 'count', 4, const=True), 'count x 4: x, y, z [N], 0; gravity is not included'),
         ('torques', View(Real, 'count', 4, const=True), 'count x 4: x, y, z [N m], 0'),
         ('masses', View(Real, 'count', const=True), 'count [kg]'),
-        ('slots', View(ctypes.c_uint32, 'count', const=True), 'count: slot of dem_body less 1; see dem_body_id_get'),
-        ('materials', View(ctypes.c_int32, 'count', const=True), 'count: ids of dem_material'),
+        ('slots', View(ctypes.c_uint32, 'count', const=True), 'count: slot of Body less 1; see World.body_id'),
+        ('materials', View(ctypes.c_int32, 'count', const=True), 'count: ids of Material'),
         ('orientations', View(Real, 'count', 4, const=True),
-         'count x 4: w, x, y, z, from principal axes to the world; null if none is followed'),
+         'count x 4: w, x, y, z, from principal axes to the world; None if none is followed'),
         ('shapes', View(ctypes.c_int32, 'count', const=True),
-         'count: ids of dem_shape, 0: sphere; null if orientations is'),
+         'count: ids of Shape, 0: sphere; None if orientations is'),
         ('real_count', ctypes.c_int, 'numbers per body (desc.body_reals)'),
-        ('reals', View(Real, 'count', 'real_count', const=True), 'count x real_count; null if there are none'),
+        ('reals', View(Real, 'count', 'real_count', const=True), 'count x real_count; None if there are none'),
         ('rates', View(Real, 'count', 'real_count', const=True),
-         'count x real_count, per s, of the last step; null likewise'),
-        ('groups', ctypes.POINTER(ctypes.c_uint32), 'bit id - 1: in that group; null without desc.groups'),
+         'count x real_count, per s, of the last step; None likewise'),
+        ('groups', ctypes.POINTER(ctypes.c_uint32), 'bit id - 1: in that group; None without desc.groups'),
     ]
 
 
 @_struct
 class Selection(Struct):
-    """Which bodies: those that fulfil every condition. DEM_SELECTION, all zero, selects every body."""
+    """Which bodies: those that fulfil every condition. Selection() selects every body."""
     c_name = 'dem_selection'
     counts = {'count': (('bodies', 1),)}
     rows = [
-        ('group', Group, 'only members of this group; id 0 means any'),
-        ('material', Material, 'only of this material; id 0 means any'),
-        ('shape', Shape, 'only of this shape; id 0 means any, spheres included'),
+        ('group', Group, 'only members of this group; None means any'),
+        ('material', Material, 'only of this material; None means any'),
+        ('shape', Shape, 'only of this shape; None means any, spheres included'),
         ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means no limit'),
         ('radius_max', Real, ""),
         ('region', View(Region, const=True, one=True),
-         'Only bodies whose centre is in this region, or on a periodic axis one of its images. Null means '
+         'Only bodies whose centre is in this region, or on a periodic axis one of its images. None means '
          'anywhere.'),
         ('count', ctypes.c_int, 'of bodies'),
         ('bodies', View(Body, 'count', const=True),
-         'Only these; ids of bodies that are gone do not count. Null means any.'),
+         'Only these; ids of bodies that are gone do not count. None means any.'),
     ]
 
 
@@ -3580,8 +4172,8 @@ class BodiesMeans(Struct):
         ('mass', ctypes.c_double, 'kg, sum'),
         ('centre', ctypes.c_double*3, 'm, of mass; positions in the periodic box'),
         ('velocity', ctypes.c_double*3, 'm/s, of the centre of mass'),
-        ('spin', ctypes.c_double*3, 'rad/s and m: means over bodies'),
-        ('radius', ctypes.c_double, ""),
+        ('spin', ctypes.c_double*3, 'rad/s: means over bodies'),
+        ('radius', ctypes.c_double, 'm: means over bodies'),
         ('force', ctypes.c_double*3, 'N, sum: of the last step, without gravity'),
         ('kinetic', ctypes.c_double, 'J, sums, those of fixed bodies included'),
         ('rotational', ctypes.c_double, ""),
@@ -3596,14 +4188,14 @@ class ClusterDesc(Struct):
     rows = [
         ('count', ctypes.c_int, 'required, 1 to 1000: number of spheres'),
         ('positions', View(Real, 'count', 3, const=True), 'm, required: count x 3'),
-        ('radii', View(Real, const=True), 'm, > 0: one each; null means that all have `radius`'),
-        ('radius', Real, 'm, of all spheres if radii is null'),
+        ('radii', View(Real, const=True), 'm, > 0: one each; None means that all have `radius`'),
+        ('radius', Real, 'm, of all spheres if radii is None'),
         ('mass', ClusterMass, ''),
         ('rays', ctypes.c_int,
-         'DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; 0 means 512. It is an error if rays are'
-         ' more than a quarter of the smallest radius apart.'),
-        ('volume', Real, 'The rest is for DEM_CLUSTER_GIVEN.'),
-        ('centre', Vec3, 'm3'),
+         '"union": rays per side of the outline, 16 to 4096; 0 means 512. It is an error if rays are more than'
+         ' a quarter of the smallest radius apart.'),
+        ('volume', Real, 'm3. The rest is for "given".'),
+        ('centre', Vec3, 'm, centre of mass'),
         ('inertia', Real*6,
          'm5, moments of inertia about the centre per density: xx, yy, zz, xy, xz, yz. Off-diagonal ones are '
          'elements of the tensor: xy is -(integral of x y).'),
@@ -3646,9 +4238,9 @@ class EllipsoidContact(Struct):
     rows = [
         ('scale', Real, 'W0: scaled by it about their centres, the two touch in one point. < 1 if they overlap.'),
         ('lambda_', Real, '0 to 1, maximises the function of Perram and Wertheim'),
-        ('point', Vec3, 'm, of that contact; unit vector from a to b'),
-        ('normal', Vec3, ""),
-        ('depth_normal', Real, 'm, overlaps as in dem_overlap; negative if the two are apart, where depth_chord is 0'),
+        ('point', Vec3, 'm, of that contact'),
+        ('normal', Vec3, 'unit vector from a to b'),
+        ('depth_normal', Real, 'm, overlaps as in Overlap; negative if the two are apart, where depth_chord is 0'),
         ('depth_chord', Real, ""),
         ('depth_conservative', Real, ""),
         ('iterations', ctypes.c_int, 'evaluations of that function'),
@@ -3671,13 +4263,13 @@ class BodyCounts(Struct):
 
 @_struct
 class MotionRow(Struct):
-    """A pose or, for DEM_MOTION_SERVO, a load of a wall at a time."""
+    """A pose or, for "servo", a load of a wall at a time."""
     c_name = 'dem_motion_row'
     rows = [
         ('time', ctypes.c_double, 's, after start; the first is 0, ascending'),
         ('position', Vec3, 'm, displacement from the pose in which the motion started'),
         ('rotation', Quat, 'from that pose, about the displaced `point`; 0: not rotated'),
-        ('load', Real, 'N, or Pa: see `load` of dem_motion; used instead of a pose'),
+        ('load', Real, 'N, or Pa: see `load` of Motion; used instead of a pose'),
     ]
 
 
@@ -3698,12 +4290,12 @@ def _wrap_dem_motion_fn(function, context, struct):
 
 
 MotionFn = Function(_wrap_dem_motion_fn, None, ctypes.c_double, ctypes.POINTER(Pose), ctypes.c_void_p)
-MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step, for its end and its middle, from one thread. With impulses dem.h also calls it for the next step: it must be valid one step ahead. dem_world_check calls it too, also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE.'
+MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact derivatives of position and rotation. It is called twice per step, for its end and its middle, from one thread. With impulses dem.h also calls it for the next step: it must be valid one step ahead. World.check calls it too, also for later times, and reports a velocity or spin that is not the derivative. A pose that is not finite, is clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with UnstableError.'
 
 
 @_struct
 class Motion(Struct):
-    """The motion of a wall. It starts from the pose that the wall has when dem_wall_motion_set is called."""
+    """The motion of a wall. It starts from the pose that the wall has when Wall.motion_set is called."""
     c_name = 'dem_motion'
     counts = {'table_count': (('table', 1),)}
     rows = [
@@ -3712,18 +4304,18 @@ class Motion(Struct):
          'm/s, of translating walls; of oscillating ones the direction only; of servo walls the direction in '
          'which they press, and their largest speed'),
         ('point', Vec3,
-         'm; point and direction of the axis of rotation, to which dem_wall_loads also refers torques; axis 0 '
-         'means along z. Rotating walls need an axis.'),
+         'm; point and direction of the axis of rotation, to which WallLoads also refers torques; axis 0 means'
+         ' along z. Rotating walls need an axis.'),
         ('axis', Vec3, ""),
         ('speed', Real, 'rad/s, of rotating walls'),
-        ('amplitude', Real, 'm, Hz, rad: of oscillating walls'),
-        ('frequency', Real, ""),
-        ('phase', Real, ""),
+        ('amplitude', Real, 'm: of oscillating walls'),
+        ('frequency', Real, 'Hz: of oscillating walls'),
+        ('phase', Real, 'rad: of oscillating walls'),
         ('start', ctypes.c_double,
          's. Until then rotating, translating and servo walls are at rest. A time in the past means now.'),
         ('function', MotionFn,
-         'The function of DEM_MOTION_USER. It must not rotate a mesh or profile that spans a period, because '
-         'the ends stay joined to those of its images: use a table.'),
+         'The function of "user". It must not rotate a mesh or profile that spans a period, because the ends '
+         'stay joined to those of its images: use a table.'),
         ('user', ctypes.c_void_p, 'passed to function'),
         ('ramp', ctypes.c_double,
          's, >= 0. The speed (translating, rotating), amplitude (oscillating) or load (servo) rises as 3 u^2 -'
@@ -3731,14 +4323,14 @@ class Motion(Struct):
         ('load', Real,
          'N, of servo walls: the force with which the wall presses the grains along `velocity`. A table '
          'replaces it: linear between rows, constant after the last. Servo walls whose motions are equal are '
-         'one piston and bear the load together. They need DEM_RESPONSE_SPRINGS.'),
+         'one piston and bear the load together. They need "springs".'),
         ('area', Real, 'm2, >= 0: load is a stress (Pa) on it; 0 means a force (N)'),
         ('travel', Real, 'm, >= 0, of servo walls: largest distance; 0 means no limit'),
         ('table', View(MotionRow, const=True),
-         'The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity and '
-         'spin are continuous (tangents of the parabola through three rows). The wall is at rest before the '
-         'first row and after the last. With table_repeats = 1 the table starts again after its last row, '
-         'which should equal the first. From row to row the wall rotates by less than pi.'),
+         'The rows of "table", at least 2. Between rows the pose is a cubic, so that velocity and spin are '
+         'continuous (tangents of the parabola through three rows). The wall is at rest before the first row '
+         'and after the last. With table_repeats = 1 the table starts again after its last row, which should '
+         'equal the first. From row to row the wall rotates by less than pi.'),
         ('table_count', ctypes.c_int, ''),
         ('table_repeats', ctypes.c_int, ''),
     ]
@@ -3812,13 +4404,13 @@ class WallLoads(Struct):
         ('torque_axial', Real, 'N m, component along the axis of its motion'),
         ('power', Real,
          'W, from the wall to the grains: -(force . v + torque . w), and the power of friction on a surface '
-         'that moves in itself (dem_wall_surface_velocity_set)'),
+         'that moves in itself (Wall.surface_velocity_set)'),
         ('contacts', ctypes.c_int, 'present number'),
         ('touched', ctypes.c_int, '1 if a grain has touched the wall since it was added'),
-        ('impulse', ctypes.c_double*3, 'All that follow except `rate` are sums since dem_wall_loads_reset.'),
-        ('torque_impulse', ctypes.c_double, 'N s'),
-        ('work', ctypes.c_double, 'N m s, of torque_axial'),
-        ('time', ctypes.c_double, 'J, from the wall to the grains'),
+        ('impulse', ctypes.c_double*3, 'N s. All that follow except `rate` are sums since Wall.loads_reset.'),
+        ('torque_impulse', ctypes.c_double, 'N m s, of torque_axial'),
+        ('work', ctypes.c_double, 'J, from the wall to the grains'),
+        ('time', ctypes.c_double, 's, over which these sums extend'),
         ('rate', ctypes.c_double*BODY_REALS,
          'per s, last step: what laws gave to its numbers (desc.body_reals), in their units'),
         ('gained', ctypes.c_double*BODY_REALS, 'its sum over time'),
@@ -3834,13 +4426,16 @@ class Joint(Id):
     ]
 
     def motor_set(self, motor, speed, torque):
-        """Replaces the motor of a joint from the next step on. The values are those of dem_joint_desc."""
+        """Replaces the motor of a joint from the next step on. The values are those of JointDesc."""
         self.world._ok(_lib.dem_joint_motor_set(self.world._c, self, _enum_of(motor, Motor, 'Joint.motor_set: motor'),
             speed, torque))
 
     @property
     def state(self):
-        """Writes the state of a joint to state."""
+        """Returns the state of a joint.
+
+        Returns: JointState
+        """
         state = JointState()
         self.world._ok(_lib.dem_joint_get(self.world._c, self, state))
         self.world._with(state)
@@ -3858,16 +4453,15 @@ class JointDesc(Struct):
     rows = [
         ('kind', JointKind, 'required: how the two are joined'),
         ('motor', Motor, ''),
-        ('a', Body, 'a is required; b null means `wall`, or space'),
-        ('b', Body, ""),
-        ('wall', Wall, 'if b is null: moves with it; null means space, at rest'),
+        ('a', Body, 'required'),
+        ('b', Body, 'None means `wall`, or space'),
+        ('wall', Wall, 'if b is None: moves with it; None means space, at rest'),
         ('collide', ctypes.c_int, '1: the two bodies may touch each other'),
         ('point', Vec3, 'm, where the two are joined'),
         ('axis', Vec3, 'of a revolute joint, not 0; planar worlds: along z'),
         ('speed', Real, 'rad/s, of a against b about axis, right-handed; at most 1e12 in size'),
         ('torque', Real,
-         'N m, on a about axis; at most 1e12 in size. DEM_MOTOR_SPEED: the largest torque, >= 0; 0 means no '
-         'limit.'),
+         'N m, on a about axis; at most 1e12 in size. "speed": the largest torque, >= 0; 0 means no limit.'),
     ]
 
 
@@ -3880,8 +4474,8 @@ class JointState(Struct):
         ('torque', Vec3, ""),
         ('motor_torque', Real, 'N m, on a about axis, of the last step'),
         ('power', Real, 'W, from the motor to a and b; 0 without a motor'),
-        ('gap', Real, 'in the middle of the coming step: m between the points; sine of the angle of the axes'),
-        ('tilt', Real, ""),
+        ('gap', Real, 'in the middle of the coming step: m between the points'),
+        ('tilt', Real, 'in the middle of the coming step: sine of the angle of the axes'),
         ('turned', ctypes.c_double, 'rad, of a against b about axis since the joint was added'),
         ('work', ctypes.c_double, 'J, of the motor'),
     ]
@@ -3892,12 +4486,12 @@ class RailDesc(Struct):
     """A rail. Components of velocity and spin along axes that are not locked are ignored."""
     c_name = 'dem_rail_desc'
     rows = [
-        ('axes', ctypes.c_int, '0 to 63: sum of DEM_RAIL_ constants; 0 means no rail'),
+        ('axes', ctypes.c_int, '0 to 63: sum of dem.RAIL_ constants; 0 means no rail'),
         ('velocity', Vec3, 'm/s, along locked axes'),
         ('spin', Vec3, 'rad/s, about locked axes'),
         ('wall', Wall,
          'Along and about locked axes the body also follows the pose of this wall, as if it were part of it, '
-         'so any motion of a wall is a path for a body. Null means none, as after the removal of the wall.'),
+         'so any motion of a wall is a path for a body. None means none, as after the removal of the wall.'),
     ]
 
 
@@ -3924,7 +4518,10 @@ class Feed(Id):
 
     @property
     def state(self):
-        """Writes the state of a feed to state."""
+        """Returns the state of a feed.
+
+        Returns: FeedState
+        """
         state = FeedState()
         self.world._ok(_lib.dem_feed_get(self.world._c, self, state))
         self.world._with(state)
@@ -3941,14 +4538,17 @@ class Outlet(Id):
 
     @property
     def state(self):
-        """Writes the counts of an outlet to state."""
+        """Returns the counts of an outlet.
+
+        Returns: OutletState
+        """
         state = OutletState()
         self.world._ok(_lib.dem_outlet_get(self.world._c, self, state))
         self.world._with(state)
         return state
 
     def reset(self):
-        """Sets the counts of an outlet to 0. dem_body_counts stays; grains inside have not entered."""
+        """Sets the counts of an outlet to 0. BodyCounts stays; grains inside have not entered."""
         self.world._ok(_lib.dem_outlet_reset(self.world._c, self))
 
     def residence_csv_write(self, path):
@@ -3961,8 +4561,8 @@ class Outlet(Id):
 
 @_struct
 class FeedDesc(Struct):
-    """A feed adds grains while the world runs, at random free positions in a region (free as in dem_spheres_fill), at a
-    rate or all at once. A grain for which there is no room waits; none is lost. Most grains join the present
+    """A feed adds grains while the world runs, at random free positions in a region (free as in World.spheres_fill), at
+    a rate or all at once. A grain for which there is no room waits; none is lost. Most grains join the present
     neighbour list. The list is rebuilt for the first grain of a new radius or material, and for every grain if the
     world has bodies that are not spheres.
     """
@@ -3980,12 +4580,12 @@ class FeedDesc(Struct):
         ('start', ctypes.c_double,
          's, time of the world. A feed that is added later catches up with what was due since start.'),
         ('end', ctypes.c_double, 's, 0 or >= start; 0 means no end'),
-        ('box', Box, 'm, required: centres lie inside (dem_region: whole bodies)'),
+        ('box', Box, 'm, required: centres lie inside (Region: whole bodies)'),
         ('round', ctypes.c_int, '1: only the vertical elliptic cylinder inscribed in the box'),
         ('velocity', Vec3, 'm/s, of new grains'),
         ('spread', Real, 'm/s, largest random change of each component of velocity'),
         ('seed', ctypes.c_uint64, 'of random positions, sizes and velocities'),
-        ('inside', InsideFn, 'restricts the box further, as in dem_region'),
+        ('inside', InsideFn, 'restricts the box further, as in Region'),
         ('inside_user', ctypes.c_void_p, 'passed to inside'),
         ('materials', Material*CLASSES,
          'A mixture: for each class, if not 0, its material; its shape, in random orientations and with the '
@@ -4010,28 +4610,28 @@ class FeedState(Struct):
 
 @_struct
 class OutletDesc(Struct):
-    """An outlet removes the grains, fixed ones included, whose centre is in a region, and counts them; dem_body_counts
-    counts them as left. It checks whenever the neighbour list is rebuilt and every 64 steps: a grain is up to half a
-    skin or 64 steps inside before it is removed, so that many grains that leave one by one cost little. A region
-    thinner than half a skin may miss grains. Bodies that are not spheres count with the radius of their bounding
-    sphere. With `keep` an outlet only counts the grains that enter, go back and are inside. The discharge through a
-    plane is what enters the box behind it.
+    """An outlet removes the grains, fixed ones included, whose centre is in a region, and counts them; BodyCounts counts
+    them as left. It checks whenever the neighbour list is rebuilt and every 64 steps: a grain is up to half a skin or
+    64 steps inside before it is removed, so that many grains that leave one by one cost little. A region thinner than
+    half a skin may miss grains. Bodies that are not spheres count with the radius of their bounding sphere. With
+    `keep` an outlet only counts the grains that enter, go back and are inside. The discharge through a plane is what
+    enters the box behind it.
     """
     c_name = 'dem_outlet_desc'
     counts = {'class_count': (('radius', 1),)}
     rows = [
-        ('frame', Wall, 'the region moves with this wall; null means at rest'),
+        ('frame', Wall, 'the region moves with this wall; None means at rest'),
         ('box', Box, 'm, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0)'),
         ('beyond', Real, "m: only grains this far or farther from the frame's z axis"),
         ('wanted_min', Real, 'm, radii meant to leave here; max 0 means no limit'),
         ('wanted_max', Real, ""),
         ('class_count', ctypes.c_int, 'size classes to count in, 0 to 16'),
         ('radius', Real*CLASSES, 'm, ascending; a grain counts in the nearest class'),
-        ('material', Material, 'only grains of this material; id 0 means all'),
+        ('material', Material, 'only grains of this material; None means all'),
         ('keep', ctypes.c_int, '1: grains stay and are only counted; at most 16 such'),
         ('residence_bin', ctypes.c_double,
          's, >= 0: width of a bin of residence times, which run from the insertion of a grain (grains that '
-         'were there before: from dem_outlet_add) until the outlet counts it; 0: not measured'),
+         'were there before: from World.outlet) until the outlet counts it; 0: not measured'),
     ]
 
 
@@ -4048,8 +4648,8 @@ class OutletState(Struct):
         ('gangue', ctypes.c_uint64, ""),
         ('sorted_mass', ctypes.c_double, 'kg'),
         ('gangue_mass', ctypes.c_double, ""),
-        ('since', ctypes.c_double, 's: when counting began; when the last grain was counted'),
-        ('last', ctypes.c_double, ""),
+        ('since', ctypes.c_double, 's: when counting began'),
+        ('last', ctypes.c_double, 's: when the last grain was counted'),
         ('back', ctypes.c_uint64*CLASSES,
          '`keep` only: grains that went back, and grains that are inside now. Grains that were inside when '
          'counting began have not entered.'),
@@ -4102,7 +4702,7 @@ class Finding(Struct):
 
 @_struct
 class CellDesc(Struct):
-    """How the sides of a periodic domain, the cell, move. Begin with DEM_CELL_DESC: they do not."""
+    """How the sides of a periodic domain, the cell, move."""
     c_name = 'dem_cell_desc'
     rows = [
         ('rate', Vec3, '1/s, strain rate of each axis; positive: the cell becomes longer'),
@@ -4121,9 +4721,8 @@ class CellState(Struct):
     rows = [
         ('box', Box, 'm, the domain now'),
         ('offset', Real, 'm, along x: displacement of images across the upper y face'),
-        ('strain', ctypes.c_double*3,
-         'since the beginning: logarithmic strain of each axis, > 0: longer; shear strain'),
-        ('shear', ctypes.c_double, ""),
+        ('strain', ctypes.c_double*3, 'since the beginning: logarithmic strain of each axis, > 0: longer'),
+        ('shear', ctypes.c_double, 'since the beginning: shear strain'),
         ('rate', ctypes.c_double*3, '1/s, of the last step'),
         ('shear_rate', ctypes.c_double, ""),
         ('stress', ctypes.c_double*3, 'Pa, along each axis, before the last step; at first 0'),
@@ -4135,13 +4734,13 @@ class Counters(Struct):
     """Counters of a world. Checkpoints store them."""
     c_name = 'dem_counters'
     rows = [
-        ('steps', ctypes.c_uint64, 'steps taken; rebuilds of the neighbour list'),
-        ('rebuilds', ctypes.c_uint64, ""),
-        ('candidates', ctypes.c_int,
-         'of the last step: candidate pairs of bodies; contacts between bodies; contacts with walls. A contact'
-         ' of polyhedra counts once. With impulses a contact counts if its impulse is not 0.'),
-        ('contacts', ctypes.c_int, ""),
-        ('wall_contacts', ctypes.c_int, ""),
+        ('steps', ctypes.c_uint64, 'steps taken'),
+        ('rebuilds', ctypes.c_uint64, 'rebuilds of the neighbour list'),
+        ('candidates', ctypes.c_int, 'of the last step: candidate pairs of bodies'),
+        ('contacts', ctypes.c_int, 'of the last step: contacts between bodies'),
+        ('wall_contacts', ctypes.c_int,
+         'of the last step: contacts with walls. A contact of polyhedra counts once. With impulses a contact '
+         'counts if its impulse is not 0.'),
         ('overlap_max', Real,
          'largest overlap since the last reset, over the smaller radius (of other shapes: over the smaller '
          'half width along the normal). A run stops at 1.'),
@@ -4149,8 +4748,8 @@ class Counters(Struct):
         ('skin', Real, 'm, in use'),
         ('dt', Real, 's, in use'),
         ('search', Search, 'in use'),
-        ('threads', ctypes.c_int, 'OpenMP threads; work groups (see the glossary)'),
-        ('domains', ctypes.c_int, ""),
+        ('threads', ctypes.c_int, 'OpenMP threads'),
+        ('domains', ctypes.c_int, 'work groups (see the glossary)'),
         ('sweeps', ctypes.c_int, 'impulses: sweeps of the last step'),
         ('residual', Real,
          'impulses: m/s, largest and root mean square change of a contact velocity in the last sweep of the '
@@ -4168,7 +4767,7 @@ class Ledger(Struct):
     """The account of energy, J, since the world was created; zeros unless desc.ledger is 1. residual = kinetic +
     rotational + elastic - gravity - walls - force - cell - inserted - growth + removed + normal + slide + tangent +
     rolling The residual is the error of the time integration; compare it with `throughput`. Potential energy is not
-    stored energy here: `gravity` is the work of gravity. If a user-defined law never fills force->energy, the ledger
+    stored energy here: `gravity` is the work of gravity. If a user-defined law never fills force.energy, the ledger
     cannot separate what the law stores from what it dissipates: `unknown` then holds the residual, and `residual` is
     0.
     """
@@ -4177,20 +4776,17 @@ class Ledger(Struct):
         ('kinetic', ctypes.c_double, 'stored now'),
         ('rotational', ctypes.c_double, ""),
         ('elastic', ctypes.c_double, ""),
-        ('gravity', ctypes.c_double,
-         'supplied: work of gravity; of moving walls, belts, motors and rails; of force fields; of a cell that'
-         ' deforms; kinetic energy of inserted bodies, and its changes by dem_body_set and other calls that '
-         'set velocities, fix bodies or change masses'),
-        ('walls', ctypes.c_double, ""),
-        ('force', ctypes.c_double, ""),
-        ('cell', ctypes.c_double, ""),
-        ('inserted', ctypes.c_double, ""),
-        ('normal', ctypes.c_double,
-         'dissipated: by normal dashpots, hysteresis, impacts and joints; by sliding; by tangential dashpots; '
-         'by rolling resistance'),
-        ('slide', ctypes.c_double, ""),
-        ('tangent', ctypes.c_double, ""),
-        ('rolling', ctypes.c_double, ""),
+        ('gravity', ctypes.c_double, 'supplied: work of gravity'),
+        ('walls', ctypes.c_double, 'supplied: work of moving walls, belts, motors and rails'),
+        ('force', ctypes.c_double, 'supplied: work of force fields'),
+        ('cell', ctypes.c_double, 'supplied: work of a cell that deforms'),
+        ('inserted', ctypes.c_double,
+         'supplied: kinetic energy of inserted bodies, and its changes by Body.set and other calls that set '
+         'velocities, fix bodies or change masses'),
+        ('normal', ctypes.c_double, 'dissipated: by normal dashpots, hysteresis, impacts and joints'),
+        ('slide', ctypes.c_double, 'dissipated: by sliding'),
+        ('tangent', ctypes.c_double, 'dissipated: by tangential dashpots'),
+        ('rolling', ctypes.c_double, 'dissipated: by rolling resistance'),
         ('removed', ctypes.c_double, 'kinetic energy of removed bodies'),
         ('throughput', ctypes.c_double, 'sum of the magnitudes of what was supplied'),
         ('growth', ctypes.c_double,
@@ -4208,13 +4804,12 @@ class Totals(Struct):
     """Totals over all bodies that can move."""
     c_name = 'dem_totals'
     rows = [
-        ('mass', ctypes.c_double, 'kg; J; J'),
-        ('kinetic', ctypes.c_double, ""),
+        ('mass', ctypes.c_double, 'kg'),
+        ('kinetic', ctypes.c_double, 'J'),
         ('rotational', ctypes.c_double, ""),
-        ('centre', ctypes.c_double*3,
-         'centre of mass, m; momentum, kg m/s; angular momentum about the origin, kg m2/s'),
-        ('momentum', ctypes.c_double*3, ""),
-        ('angular', ctypes.c_double*3, ""),
+        ('centre', ctypes.c_double*3, 'centre of mass, m'),
+        ('momentum', ctypes.c_double*3, 'momentum, kg m/s'),
+        ('angular', ctypes.c_double*3, 'angular momentum about the origin, kg m2/s'),
     ]
 
 
@@ -4239,10 +4834,10 @@ class Observable(Struct):
     """A named observable."""
     c_name = 'dem_observable'
     rows = [
-        ('name', str, '`unit` or null; both must outlive the dem_trials'),
+        ('name', str, '`unit` or None; both must outlive the Trials'),
         ('unit', str, ""),
         ('function', ObserverFn, ''),
-        ('user', ctypes.c_void_p, 'passed to `function`; or null'),
+        ('user', ctypes.c_void_p, 'passed to `function`; or None'),
         ('scale', ctypes.c_double, '>= 0, divides deviations; 0: the value of the reference'),
     ]
 
@@ -4260,12 +4855,12 @@ def _wrap_dem_progress_fn(function, context, struct):
 
 
 ProgressFn = Function(_wrap_dem_progress_fn, ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
-ProgressFn.__doc__ = 'Receives the progress of a run, about ten times per second of wall time and once at the end. done: fraction, 0 to 1. seconds_left: estimated wall time, s. A non-zero return value stops the run with DEM_ERROR_STOPPED and leaves the state intact; at the end it has no effect.'
+ProgressFn.__doc__ = 'Receives the progress of a run, about ten times per second of wall time and once at the end. done: fraction, 0 to 1. seconds_left: estimated wall time, s. A non-zero return value stops the run with StoppedError and leaves the state intact; at the end it has no effect.'
 
 
 @_struct
 class TrialsDesc(Struct):
-    """How dem_trials_run works. Begin with DEM_TRIALS_DESC."""
+    """How World.trials_run works."""
     c_name = 'dem_trials_desc'
     counts = {'observable_count': (('observables', 1),)}
     rows = [
@@ -4284,9 +4879,9 @@ class TrialsDesc(Struct):
          ' kinetic, scaled by the present energy plus that of a fall of all grains by their radius; contacts.'),
         ('observables', Observable*OBSERVABLES, ''),
         ('progress', ProgressFn,
-         'called with the original world after each trial; null means no call. A non-zero return value ends '
-         'dem_trials_run with DEM_ERROR_STOPPED.'),
-        ('user', ctypes.c_void_p, 'passed to `progress`; or null'),
+         'called with the original world after each trial; None means no call. A non-zero return value ends '
+         'World.trials_run with StoppedError.'),
+        ('user', ctypes.c_void_p, 'passed to `progress`; or None'),
     ]
 
 
@@ -4305,8 +4900,8 @@ class Trial(Struct):
         ('dt', ctypes.c_double, 's, at the end'),
         ('done', ctypes.c_int, 'runs that reached their end, 0 to seeds'),
         ('seconds', ctypes.c_double, 'wall time per simulated second'),
-        ('value', ctypes.c_double*OBSERVABLES, 'mean over runs; standard error'),
-        ('error', ctypes.c_double*OBSERVABLES, ""),
+        ('value', ctypes.c_double*OBSERVABLES, 'mean over runs'),
+        ('error', ctypes.c_double*OBSERVABLES, 'standard error'),
         ('drift', ctypes.c_double*OBSERVABLES, 'deviation from the reference, over the scale'),
         ('promise', ctypes.c_double,
          'every observable is within this of the reference, over its scale: the largest |drift| plus the '
@@ -4317,16 +4912,16 @@ class Trial(Struct):
 
 @_struct
 class Trials(Struct):
-    """The results of dem_trials_run."""
+    """The results of World.trials_run."""
     c_name = 'dem_trials'
     rows = [
-        ('count', ctypes.c_int, 'trials; index of the best one, 0: the scene as it is'),
-        ('best', ctypes.c_int, ""),
+        ('count', ctypes.c_int, 'trials'),
+        ('best', ctypes.c_int, 'index of the best one, 0: the scene as it is'),
         ('reference', ctypes.c_int, 'index of the trial with the smallest step'),
-        ('duration', ctypes.c_double, 's simulated by each run; tolerance applied'),
-        ('tolerance', ctypes.c_double, ""),
-        ('seeds', ctypes.c_int, 'runs per trial; observables'),
-        ('observable_count', ctypes.c_int, ""),
+        ('duration', ctypes.c_double, 's simulated by each run'),
+        ('tolerance', ctypes.c_double, 'tolerance applied'),
+        ('seeds', ctypes.c_int, 'runs per trial'),
+        ('observable_count', ctypes.c_int, 'observables'),
         ('observables', Observable*OBSERVABLES, ''),
         ('trial', Trial*TRIALS, ''),
         ('advice', Text(400), 'what to do, and why'),
@@ -4338,11 +4933,11 @@ class ContactInfo(Struct):
     """One contact."""
     c_name = 'dem_contact_info'
     rows = [
-        ('a', Body, 'b is null for a contact with a wall'),
+        ('a', Body, 'b is None for a contact with a wall'),
         ('b', Body, ""),
-        ('wall', ctypes.c_int32, 'dem_wall id; 0: b is a body'),
-        ('point', Vec3, 'm, on the surface of a wall; unit, from a to b'),
-        ('normal', Vec3, ""),
+        ('wall', ctypes.c_int32, 'Wall id; 0: b is a body'),
+        ('point', Vec3, 'm, on the surface of a wall'),
+        ('normal', Vec3, 'unit, from a to b'),
         ('overlap', Real, 'm; < 0: a gap within the range of the law'),
         ('force', Vec3, 'N, on a'),
         ('further', ctypes.c_int, "1: another point of the polyhedron's contact before"),
@@ -4358,31 +4953,31 @@ class Event(Struct):
     c_name = 'dem_event'
     rows = [
         ('kind', EventKind, ''),
-        ('a', Body, 'a has the lower slot; b is null for a contact with a wall'),
-        ('b', Body, ""),
-        ('wall', ctypes.c_int32, 'dem_wall id; 0: b is a body'),
+        ('a', Body, 'a has the lower slot'),
+        ('b', Body, 'None for a contact with a wall'),
+        ('wall', ctypes.c_int32, 'Wall id; 0: b is a body'),
         ('material_a', Material, ''),
         ('material_b', Material, ''),
         ('cut', ctypes.c_int,
          '1: recording began during the contact; 2: it ended because a body or the wall was removed; 3: both. '
          'Else 0.'),
-        ('point', Vec3, 'm; unit, from a to b: where it began'),
-        ('normal', Vec3, ""),
-        ('begin', ctypes.c_double, 's; end: the present time unless kind is DEM_EVENT_END'),
-        ('end', ctypes.c_double, ""),
+        ('point', Vec3, 'm: where it began'),
+        ('normal', Vec3, 'unit, from a to b: where it began'),
+        ('begin', ctypes.c_double, 's'),
+        ('end', ctypes.c_double, 'the present time unless kind is "end"'),
         ('closing_speed', ctypes.c_double,
-         'm/s, relative velocity at the contact point when it began: along the normal, > 0 if the two '
-         'approach; across it. They belong to the first step of the contact.'),
-        ('slip_speed', ctypes.c_double, ""),
+         'm/s, relative velocity at the contact point when it began: along the normal, > 0 if the two approach'),
+        ('slip_speed', ctypes.c_double,
+         'm/s, relative velocity at the contact point when it began: across it. They belong to the first step '
+         'of the contact.'),
         ('mass', ctypes.c_double,
          'kg, effective mass m_a m_b/(m_a + m_b) for a central impact; fixed bodies and walls are infinitely '
          'heavy; 0: neither can move'),
         ('force', ctypes.c_double,
-         'N, the largest normal force, summed over contact points (of impulses the mean over a step); N s, the'
-         ' normal force summed over time'),
-        ('impulse', ctypes.c_double, ""),
+         'N, the largest normal force, summed over contact points (of impulses the mean over a step)'),
+        ('impulse', ctypes.c_double, 'N s, the normal force summed over time'),
         ('lost_normal', ctypes.c_double,
-         'J, energy lost so far as in dem_ledger: by the normal law, by sliding, by tangential dashpots (and '
+         'J, energy lost so far as in Ledger: by the normal law, by sliding, by tangential dashpots (and '
          'springs that held energy at the end; what they stored when recording began counts as supplied), by '
          'rolling resistance'),
         ('lost_slide', ctypes.c_double, ""),
@@ -4392,10 +4987,11 @@ class Event(Struct):
 
 
 def _wrap_dem_event_fn(function, context, struct):
+    event_of = _read(Event).from_address
 
     def call(event, user):
         try:
-            _event = Event.from_address(event)
+            _event = event_of(event)
             function(_event)
             if _refs(_event) > _ONE and _held(_event):
                 raise _kept('event')
@@ -4410,13 +5006,13 @@ EventFn.__doc__ = 'Receives one contact. It may only read the world.'
 
 @_struct
 class EventsDesc(Struct):
-    """How contacts are recorded. Begin with DEM_EVENTS_DESC."""
+    """How contacts are recorded."""
     c_name = 'dem_events_desc'
     rows = [
         ('function', EventFn,
-         'called after each step for the contacts that have ended in it; null means no call. The contacts are '
+         'called after each step for the contacts that have ended in it; None means no call. The contacts are '
          'in the order of their ids, for any number of threads and slabs.'),
-        ('user', ctypes.c_void_p, 'passed to `function`; or null'),
+        ('user', ctypes.c_void_p, 'passed to `function`; or None'),
         ('begins', ctypes.c_int, '1: also called for contacts that have begun, before those'),
     ]
 
@@ -4441,9 +5037,8 @@ class Impacts(Struct):
          'contacts that have ended, by energy of impact mass*closing_speed^2/2; those that had begun before '
          'the recording are not counted'),
         ('losses', ctypes.c_double*IMPACT_BINS,
-         'contacts that have ended, by energy lost in them (the sum of all four losses); and the energy lost '
-         'in the contacts of each bin, J'),
-        ('energy', ctypes.c_double*IMPACT_BINS, ""),
+         'contacts that have ended, by energy lost in them (the sum of all four losses)'),
+        ('energy', ctypes.c_double*IMPACT_BINS, 'the energy lost in the contacts of each bin, J'),
     ]
 
 
@@ -4453,27 +5048,27 @@ class Wear(Struct):
     c_name = 'dem_wear'
     rows = [
         ('seconds', ctypes.c_double, 's, recorded so far'),
-        ('slide', ctypes.c_double, 'J, lost on it by sliding; by the normal law'),
-        ('normal', ctypes.c_double, ""),
+        ('slide', ctypes.c_double, 'J, lost on it by sliding'),
+        ('normal', ctypes.c_double, 'J, lost on it by the normal law'),
         ('volume', ctypes.c_double, 'm3, coefficient*slide/hardness'),
     ]
 
 
 @_struct
 class Servo(Struct):
-    """What a servo wall (DEM_MOTION_SERVO) does. Force, speed and distance are along the direction of its velocity, in
-    which it presses the grains; a piston of several walls has one state.
+    """What a servo wall ("servo") does. Force, speed and distance are along the direction of its velocity, in which it
+    presses the grains; a piston of several walls has one state.
     """
     c_name = 'dem_servo'
     rows = [
         ('target', ctypes.c_double, 'N: force to reach and force on the grains, now'),
         ('force', ctypes.c_double, ""),
-        ('speed', ctypes.c_double, 'm/s; m, from the pose in which the motion began'),
-        ('travel', ctypes.c_double, ""),
+        ('speed', ctypes.c_double, 'm/s'),
+        ('travel', ctypes.c_double, 'm, from the pose in which the motion began'),
         ('stiffness', ctypes.c_double,
          'N/m, N s/m: sums over the contacts of the wall when its speed was chosen, at `time` (s). They set '
          'the gain. The speed changes from u to v with stiffness dt (v - 0.9 u) + damping (v - u) = (target - '
-         'force)/2, and is at most the largest one (>>servo).'),
+         'force)/2, and is at most the largest one.'),
         ('damping', ctypes.c_double, ""),
         ('time', ctypes.c_double, ""),
     ]
@@ -4484,16 +5079,18 @@ class Stress(Struct):
     """Stress and fabric of the whole domain. Tensors are xx yy zz xy xz yz."""
     c_name = 'dem_stress'
     rows = [
-        ('volume', ctypes.c_double, 'm3, of the domain; fraction that bodies fill'),
-        ('solid', ctypes.c_double, ""),
+        ('volume', ctypes.c_double, 'm3, of the domain'),
+        ('solid', ctypes.c_double, 'fraction that bodies fill'),
         ('contact', ctypes.c_double*6,
-         'Pa, pressure positive: of contacts, the sum of force x branch over the volume; of motion, the sum of'
-         ' m v v over the volume, about the mean velocity; both together. The branch of a contact with a wall '
-         'ends on the surface of the wall. At rest without weight, stress x volume is therefore the sum of '
-         'force x position over the contact points on all walls: between two planes their force x distance, at'
-         ' curved walls that sum over the curved surface.'),
-        ('kinetic', ctypes.c_double*6, ""),
-        ('total', ctypes.c_double*6, ""),
+         'Pa, pressure positive: of contacts, the sum of force x branch over the volume'),
+        ('kinetic', ctypes.c_double*6,
+         'Pa, pressure positive: of contacts, the sum of motion, the sum of m v v over the volume, about the '
+         'mean velocity'),
+        ('total', ctypes.c_double*6,
+         'Pa, pressure positive: both together. The branch of a contact with a wall ends on the surface of the'
+         ' wall. At rest without weight, stress x volume is therefore the sum of force x position over the '
+         'contact points on all walls: between two planes their force x distance, at curved walls that sum '
+         'over the curved surface.'),
         ('fabric', ctypes.c_double*6, 'mean of n n over the contacts of two bodies; its trace is 1'),
         ('contacts', ctypes.c_int, 'of two bodies'),
         ('coordination', ctypes.c_double, 'contacts per body, with walls'),
@@ -4504,7 +5101,7 @@ class Stress(Struct):
 class FieldDesc(Struct):
     """A field: a grid of cells on which a run averages solid fraction, velocity and, if desired, stress over a window of
     time. A grain counts in the cell of its centre ([MIL] 5.2.9), so cells smaller than grains need a long window; or
-    it is spread about its centre by coarse graining (width). Begin with DEM_FIELD_DESC.
+    it is spread about its centre by coarse graining (width).
     """
     c_name = 'dem_field_desc'
     rows = [
@@ -4515,7 +5112,7 @@ class FieldDesc(Struct):
         ('start', ctypes.c_double, 's, window of time; end 0 means no end'),
         ('end', ctypes.c_double, ""),
         ('interval', ctypes.c_double, 's, from start on; 0 means every 100 steps of the present dt'),
-        ('material', Material, 'only grains of this material; id 0 means all grains'),
+        ('material', Material, 'only grains of this material; None means all grains'),
         ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means any'),
         ('radius_max', Real, ""),
         ('stress', ctypes.c_int, '1: also flux, stress and contacts; visits every contact'),
@@ -4523,9 +5120,9 @@ class FieldDesc(Struct):
          "m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach c = 2 "
          'width [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of the first '
          'factor), evaluated at the centres of cells. Keep cells no longer than width.'),
-        ('group', Group, 'only members of this group; id 0 means all grains'),
+        ('group', Group, 'only members of this group; None means all grains'),
         ('variance', ctypes.c_int, '1: also variances of cells over the samples; not in slabs'),
-        ('bodies', ctypes.c_int, '1: also averages each grain (dem_body_means); one field may'),
+        ('bodies', ctypes.c_int, '1: also averages each grain (BodyMeans); one field may'),
     ]
 
 
@@ -4546,7 +5143,7 @@ class FieldData(Struct):
          'cells x 3: sum of momenta, kg m/s; velocity = momentum/mass'),
         ('grains', View(ctypes.c_double, 'cells', const=True), 'cells: sum of the number of grains'),
         ('flux', View(ctypes.c_double, 'cells', 6, const=True),
-         'null unless desc.stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over'
+         'None unless desc.stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over'
          ' the volume of the cell stress: cells x 6, Pa, pressure positive: sum over contacts of force x '
          'branch over the volume of the cell. A contact of two grains acts along the line between their '
          "centres, and each grain accounts for its half; one with a wall acts from the centre to the wall's "
@@ -4562,8 +5159,8 @@ class FieldCell(Struct):
     c_name = 'dem_field_cell'
     rows = [
         ('grains', ctypes.c_double, 'number of grains in the cell'),
-        ('solid', ctypes.c_double, 'solid fraction; bulk density, kg/m3'),
-        ('density', ctypes.c_double, ""),
+        ('solid', ctypes.c_double, 'solid fraction'),
+        ('density', ctypes.c_double, 'bulk density, kg/m3'),
         ('velocity', ctypes.c_double*3, 'm/s, weighted by mass'),
         ('temperature', ctypes.c_double, 'm2/s2, per axis, about that velocity; 0 unless desc.stress is 1'),
         ('stress', ctypes.c_double*6,
@@ -4588,19 +5185,19 @@ class BodyMeans(Struct):
     c_name = 'dem_body_means'
     rows = [
         ('samples', ctypes.c_uint64, 'number of samples; 0: all others are 0'),
-        ('velocity', ctypes.c_double*3, 'm/s; m2/s2'),
-        ('velocity_variance', ctypes.c_double*3, ""),
-        ('spin', ctypes.c_double*3, 'rad/s; (rad/s)^2'),
-        ('spin_variance', ctypes.c_double*3, ""),
-        ('force', ctypes.c_double*3, 'N; N2: of contacts and fields, not of gravity'),
-        ('force_variance', ctypes.c_double*3, ""),
+        ('velocity', ctypes.c_double*3, 'm/s'),
+        ('velocity_variance', ctypes.c_double*3, 'm2/s2'),
+        ('spin', ctypes.c_double*3, 'rad/s'),
+        ('spin_variance', ctypes.c_double*3, '(rad/s)^2'),
+        ('force', ctypes.c_double*3, 'N: of contacts and fields, not of gravity'),
+        ('force_variance', ctypes.c_double*3, 'N2: of contacts and fields, not of gravity'),
     ]
 
 
 @_struct
 class MixingDesc(Struct):
     """Two components of a mixture: the grains of one material or of a range of radii, and all others. Only grains in
-    `box` that can move count. Begin with DEM_MIXING_DESC.
+    `box` that can move count.
     """
     c_name = 'dem_mixing_desc'
     rows = [
@@ -4610,36 +5207,32 @@ class MixingDesc(Struct):
          'the component: a material (id 0: any), and (bounding) radii, m (max 0: any); not both open'),
         ('radius_min', Real, ''),
         ('radius_max', Real, ''),
-        ('centre', Vec3, 'm, a point on an axis; its direction, of any length, 0: no axis'),
-        ('axis', Vec3, ""),
+        ('centre', Vec3, 'm, a point on an axis'),
+        ('axis', Vec3, 'its direction, of any length, 0: no axis'),
     ]
 
 
 @_struct
 class Mixing(Struct):
-    """Mixing of two components (>>mixing has the formulas). Indices that are not defined are NaN: if one component is
-    absent, if all grains are in one cell, or if no cell has two grains.
+    """Mixing of two components. Indices that are not defined are NaN: if one component is absent, if all grains are in
+    one cell, or if no cell has two grains.
     """
     c_name = 'dem_mixing'
     rows = [
-        ('grains', ctypes.c_int, 'grains in the box; of these, grains of the component'),
-        ('part', ctypes.c_int, ""),
+        ('grains', ctypes.c_int, 'grains in the box'),
+        ('part', ctypes.c_int, 'of these, grains of the component'),
         ('cells', ctypes.c_int, 'cells with at least one grain'),
         ('fraction', ctypes.c_double, 'part/grains'),
-        ('variance', ctypes.c_double,
-         "variance of the component's fraction over the cells, weighted by their grains; of cells that hold "
-         'one component each; of a random mixture'),
-        ('variance_segregated', ctypes.c_double, ""),
-        ('variance_random', ctypes.c_double, ""),
-        ('lacey', ctypes.c_double,
-         "[LAC54]: 0 segregated, 1 random, above 1 more regular than random; Kramer's index, the same with "
-         'standard deviations instead of variances'),
-        ('kramer', ctypes.c_double, ""),
+        ('variance', ctypes.c_double, "variance of the component's fraction over the cells, weighted by their grains"),
+        ('variance_segregated', ctypes.c_double, 'variance of cells that hold one component each'),
+        ('variance_random', ctypes.c_double, 'variance of a random mixture'),
+        ('lacey', ctypes.c_double, '[LAC54]: 0 segregated, 1 random, above 1 more regular than random'),
+        ('kramer', ctypes.c_double, "Kramer's index, the same with standard deviations instead of variances"),
         ('segregation', ctypes.c_double*3,
          'along x, y, z, and of the distance from the axis: 1 if the component is ahead of all others, 0 '
          'random, -1 if it is behind; random mixtures deviate by sqrt((N + 1)/(3 Na Nb))'),
         ('segregation_radial', ctypes.c_double, ""),
-        ('contacts', ctypes.c_int, 'between grains in the box; -1: no list (dem_contacts_get)'),
+        ('contacts', ctypes.c_int, 'between grains in the box; -1: no list (World.contacts)'),
         ('contact_segregation', ctypes.c_double, '1: no contact between the components, 0 random; needs a list'),
     ]
 
@@ -4683,7 +5276,7 @@ class SpheresFit(Struct):
     rows = [
         ('volume', Real, 'm3, of the mesh, exact'),
         ('centre', Vec3, 'm, centre of mass of the mesh, exact'),
-        ('inertia', Real*6, 'm5, of the mesh, exact, as in dem_cluster_desc'),
+        ('inertia', Real*6, 'm5, of the mesh, exact, as in ClusterDesc'),
         ('volume_error', Real, 'volume of the union of spheres over that of the mesh, less 1'),
         ('inertia_error', Real, 'the same of the moment that deviates most; computed on the grid'),
         ('surface_error', Real, 'm, root mean square distance of the mesh from the union'),
@@ -4696,23 +5289,23 @@ class WallPart(Struct):
     """A named part of a file that becomes a wall."""
     c_name = 'dem_wall_part'
     rows = [
-        ('name', str, 'as for dem_mesh_part_read'),
+        ('name', str, 'as for World.mesh_part_read'),
         ('material', Material, ''),
-        ('motion', Motion, 'DEM_MOTION: the wall stays where it is'),
+        ('motion', Motion, 'Motion(): the wall stays where it is'),
     ]
 
 
 @_struct
 class Grains(Struct):
-    """Spheres, as read from a file. Arrays for which the file has no data are null."""
+    """Spheres, as read from a file. Arrays for which the file has no data are None."""
     c_name = 'dem_grains'
     counts = {'count': (('positions', 3), ('radii', 1), ('velocities', 3), ('spins', 3), ('materials', 1))}
     rows = [
         ('count', ctypes.c_int, ''),
-        ('positions', View(Real, 'count', 3), 'm, count x 3; m, count'),
-        ('radii', View(Real, 'count'), ""),
-        ('velocities', View(Real, 'count', 3), 'm/s, count x 3; rad/s, count x 3'),
-        ('spins', View(Real, 'count', 3), ""),
+        ('positions', View(Real, 'count', 3), 'm, count x 3'),
+        ('radii', View(Real, 'count'), 'm, count'),
+        ('velocities', View(Real, 'count', 3), 'm/s, count x 3'),
+        ('spins', View(Real, 'count', 3), 'rad/s, count x 3'),
         ('materials', View(ctypes.c_int32, 'count'), 'count: numbers of the file, 1: the first material added'),
         ('lines_left', ctypes.c_int, 'dumps and XYZ: lines of later frames, which are not read'),
         ('ignored', Text(240), 'names of columns without use, or ""'),
@@ -4732,27 +5325,27 @@ def _wrap_dem_replay_desc_number_fn(function, context, struct):
 
 
 ReplayDescNumberFn = Function(_wrap_dem_replay_desc_number_fn, ctypes.c_double, ctypes.c_void_p, Body, ctypes.c_void_p)
-ReplayDescNumberFn.__doc__ = 'returns the number of a body, for every frame; null means one of desc.body_reals'
+ReplayDescNumberFn.__doc__ = 'returns the number of a body, for every frame; None means one of desc.body_reals'
 
 
 @_struct
 class ReplayDesc(Struct):
-    """How a replay is recorded. Begin with DEM_REPLAY_DESC."""
+    """How a replay is recorded."""
     c_name = 'dem_replay_desc'
     rows = [
-        ('title', str, 'copied; null means the name of the file'),
+        ('title', str, 'copied; None means the name of the file'),
         ('number', str,
          'Name of the numbers by which grains can be coloured: one in desc.body_reals, a group in desc.groups '
-         '(1: member, 0: not), or one for the values of number_fn. Null means the first name, or "number". '
+         '(1: member, 0: not), or one for the values of number_fn. None means the first name, or "number". '
          'Copied, at most 63 characters.'),
         ('number_fn', ReplayDescNumberFn,
-         'returns the number of a body, for every frame; null means one of desc.body_reals'),
-        ('user', ctypes.c_void_p, 'passed to number_fn; or null'),
+         'returns the number of a body, for every frame; None means one of desc.body_reals'),
+        ('user', ctypes.c_void_p, 'passed to number_fn; or None'),
         ('resolution', Real, 'm, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame'),
         ('interval', ctypes.c_double,
          's, >= 0: a run writes frames automatically, the first when it begins and then at the steps nearest '
          'to multiples of the interval. A frame that cannot be written ends the replay, not the run: '
-         'dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write.'),
+         'Replay.close returns the error. 0 means frames only from Replay.frame_write.'),
         ('contacts', ctypes.c_int,
          '>= 0: n records the contact forces in every n-th frame. The viewer draws them as lines between '
          'centres, or from a centre to the contact point with a wall, wider and redder for larger forces. A '
@@ -4787,7 +5380,7 @@ def _wrap_dem_output_desc_values(function, context, struct):
             if _refs(_values) > _ONE and _held(_values):
                 raise _kept('values')
         except BaseException as error:
-            context.fail(error)
+            context.fail(_beyond(error, 'output_desc_values', values=values_type) if type(error) is IndexError else error)
             Real.from_address(values).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), OutputDescValues.c)
 
@@ -4809,43 +5402,42 @@ def _wrap_dem_output_desc_function(function, context, struct):
 
 
 OutputDescFunction = Function(_wrap_dem_output_desc_function, ctypes.c_int, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p)
-OutputDescFunction.__doc__ = 'CALL: may change the world, but not step it. A return value other than 0 stops the run (DEM_ERROR_STOPPED).'
+OutputDescFunction.__doc__ = 'CALL: may change the world, but not step it. A return value other than 0 stops the run (StoppedError).'
 
 
 @_struct
 class OutputDesc(Struct):
-    """How an output works. Begin with DEM_OUTPUT_DESC."""
+    """How an output works."""
     c_name = 'dem_output_desc'
     rows = [
         ('kind', OutputKind, ''),
         ('path', str,
          'Name of the file, copied. In "grains_####.vtp" the number of the output replaces ####; it is 0 at '
-         '`start`. Without # the file is replaced each time. The path of a CSV file has no #. DEM_OUTPUT_CALL:'
-         ' or null.'),
+         '`start`. Without # the file is replaced each time. The path of a CSV file has no #. "call": or None.'),
         ('interval', ctypes.c_double, 's, required, 1e-12 to 1e15'),
         ('start', ctypes.c_double, 's, times of the first and the last; end 0 means no last'),
         ('end', ctypes.c_double, ""),
         ('wall', Wall,
-         'CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write; the '
-         'counts of an outlet; the mixing of two components, if mixing.cells are set; the values that `values`'
-         ' writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of '
-         'these is set, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max'),
+         'CSV: what a line contains. One of five: the loads of this wall, as Wall.loads_csv_write; the counts '
+         'of an outlet; the mixing of two components, if mixing.cells are set; the values that `values` '
+         'writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of these'
+         ' is set, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max'),
         ('columns', str, ''),
         ('values', OutputDescValues, ''),
         ('function', OutputDescFunction,
          'CALL: may change the world, but not step it. A return value other than 0 stops the run '
-         '(DEM_ERROR_STOPPED).'),
-        ('user', ctypes.c_void_p, 'passed to `values` and `function`; or null'),
+         '(StoppedError).'),
+        ('user', ctypes.c_void_p, 'passed to `values` and `function`; or None'),
         ('mixing', MixingDesc, 'CSV: see above'),
         ('field', Field, 'FIELD_CSV: required'),
         ('z0', Real,
          'm, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with '
-         'dem_output_every_add: over desc.thickness (planar), over desc.domain along z if it has an extent, or'
-         ' else from the lowest to the highest body'),
+         'World.output_every: over desc.thickness (planar), over desc.domain along z if it has an extent, or '
+         'else from the lowest to the highest body'),
         ('z1', Real, ""),
         ('outlet', Outlet,
          'CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as '
-         'in dem_outlet_state'),
+         'in OutletState'),
     ]
 
 
@@ -4895,13 +5487,13 @@ class Transport(Struct):
          'from below.'),
         ('reduce_fn', TransportReduceFn,
          'Replaces each of `count` values by its sum (sum = 1) or maximum (sum = 0) over processes.'),
-        ('user', ctypes.c_void_p, 'passed to both; or null'),
+        ('user', ctypes.c_void_p, 'passed to both; or None'),
     ]
 
 
 @_struct
 class SlabsDesc(Struct):
-    """How a scene is divided. Begin with DEM_SLABS_DESC."""
+    """How a scene is divided."""
     c_name = 'dem_slabs_desc'
     rows = [
         ('axis', ctypes.c_int, '0, 1, 2: borders are planes x, y, z = const'),
@@ -4923,8 +5515,8 @@ class Slab(Struct):
     """One slab."""
     c_name = 'dem_slab'
     rows = [
-        ('grains', ctypes.c_int, 'its own grains; copies of grains of the lower neighbour'),
-        ('ghosts', ctypes.c_int, ""),
+        ('grains', ctypes.c_int, 'its own grains'),
+        ('ghosts', ctypes.c_int, 'copies of grains of the lower neighbour'),
         ('lo', ctypes.c_double, 'm, its borders; -1e300, 1e300: none on that side'),
         ('hi', ctypes.c_double, ""),
         ('work', ctypes.c_double, 'candidates + 4 per body, at the last rebuild'),
@@ -4943,8 +5535,8 @@ class SlabsCounters(Struct):
         ('rebuilds', ctypes.c_uint64, ''),
         ('border_moves', ctypes.c_uint64, ''),
         ('migrated', ctypes.c_uint64, 'grains that changed slabs, in this process'),
-        ('skin', Real, 'm, s, in use'),
-        ('dt', Real, ""),
+        ('skin', Real, 'm, in use'),
+        ('dt', Real, 's, in use'),
     ]
 
 
@@ -4955,9 +5547,8 @@ class Effect(Struct):
     rows = [
         ('name', str, ''),
         ('state', EffectState, ''),
-        ('share', ctypes.c_double,
-         'fraction of the time of a step that is saved without the effect; its standard error'),
-        ('error', ctypes.c_double, ""),
+        ('share', ctypes.c_double, 'fraction of the time of a step that is saved without the effect'),
+        ('error', ctypes.c_double, 'its standard error'),
         ('measured', ctypes.c_int, '1: share was measured; 0: no budget, or it cannot be'),
         ('missing', ctypes.c_int,
          'number of pairs of materials, walls and the like that have the effect and that nothing has touched; '
@@ -4968,10 +5559,11 @@ class Effect(Struct):
 
 def _wrap_dem_contact_fn(function, context, struct):
     memory_type = _history(context.memory, context.vectors)
+    contact_of = _read(ContactInfo).from_address
 
     def call(contact, memory, user):
         try:
-            _contact = ContactInfo.from_address(contact)
+            _contact = contact_of(contact)
             _memory = memory_type.from_address(memory) if memory else memory_type()
             function(_contact, _memory)
             if _refs(_contact) > _ONE and _held(_contact):
@@ -4979,7 +5571,7 @@ def _wrap_dem_contact_fn(function, context, struct):
             if _refs(_memory) > _ONE and _held(_memory):
                 raise _kept('memory')
         except BaseException as error:
-            context.fail(error)
+            context.fail(_beyond(error, 'contact', memory=memory_type) if type(error) is IndexError else error)
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), ContactFn.c)
 
 
@@ -5017,56 +5609,52 @@ class World(WorldBase):
         friction_load: one of "repulsive", "elastic", "magnitude"
         slider: one of "parallel", "spring", "remainder"
         convention: one of "standard", "mill"
-        law: replaces the normal, tangential and rolling law; null means the laws above
+        law: replaces the normal, tangential and rolling law; None means the laws above
         law_rows: The same law for rows of contacts of spheres, which is faster: DEM_LAW_ROWS defines it. It must
-            return what law returns; dem.h uses whichever suits. It needs law. Null means that law is called for each
+            return what law returns; dem.h uses whichever suits. It needs law. None means that law is called for each
             contact, as it always is with law_who.
-        law_user: passed to law as c->user
         law_memory: reals of contact history per contact, 0 to 16
-        law_memory_names: Names of these reals for dem_contacts_vtp_write, written as in body_reals. Null means
+        law_memory_names: Names of these reals for World.contacts_vtp_write, written as in body_reals. None means
             memory0, memory1 and so on.
         law_vectors: leading triples of them that are vectors, 0 to law_memory/3
         law_stiffness: N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the built-in
             law.
         law_range: m, >= 0. law is also called for two bodies that do not touch while their gap is below law_range +
-            law_range_radii (Ra + Rb), with c->overlap < 0. A wall counts with radius 0, an ellipsoid with its
-            bounding sphere. Built-in laws that it calls need overlap > 0. 0 means no range. With both 0, law is
-            called in contact only, at no extra cost.
+            law_range_radii (Ra + Rb), with c.overlap < 0. A wall counts with radius 0, an ellipsoid with its bounding
+            sphere. Built-in laws that it calls need overlap > 0. 0 means no range. With both 0, law is called in
+            contact only, at no extra cost.
         law_range_radii: >= 0; see law_range; 0 means no such range
-        law_who: 1 fills in c->who: ids, radii, masses, contact point, time
+        law_who: 1 fills in c.who: ids, radii, masses, contact point, time
         law_rate: Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who and
             body_reals. It is called before the first step and at least once in eight steps. A given dt above the
-            stable limit is an error; a chosen dt is at most half of it. Null means that these rates do not limit dt.
+            stable limit is an error; a chosen dt is at most half of it. None means that these rates do not limit dt.
         body_reals: Names of numbers that every body and wall carries, such as "temperature charge": at most 8 words
             of up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With law_who, law reads
-            them and returns their rates (per s). Null means no numbers.
-        body_reals_fn: Updates the numbers of a body after each step. Null means that each grows by rate dt. Numbers
-            of walls stay as set; dem_wall_loads sums what they would gain.
-        body_reals_user: passed to body_reals_fn
+            them and returns their rates (per s). None means no numbers.
+        body_reals_fn: Updates the numbers of a body after each step. None means that each grows by rate dt. Numbers
+            of walls stay as set; WallLoads sums what they would gain.
         growth: Returns the rate of the radius of a body, m/s: > 0 grows, < 0 wears. Mass follows at constant density,
             velocity and contact history stay. Each change of radii costs a new list and another computation of
-            forces. Null means constant radii; see dem_body_radius_set.
-        growth_user: passed to growth
+            forces. None means constant radii; see Body.radius_set.
         growth_interval: s, between two changes of radii; 0 means every step. A body that was added within an interval
             grows for all of it. In single precision changes below 6e-8 of a radius are lost: take a longer interval
         groups: Names of sets of bodies, such as "coarse tracer": at most 32 words of up to 23 letters, digits and _.
-            A body belongs to none until dem_bodies_group_set. Null means no groups.
-        force: force on a body; null means none
-        body_force: force and torque on a body; null means none
-        force_user: passed to both
+            A body belongs to none until World.bodies_group_set. None means no groups.
+        force: force on a body; None means none
+        body_force: force and torque on a body; None means none
         integrator: one of "velocity_verlet", "forward_euler", "symplectic_euler", "position_verlet", "leapfrog"
-        dt: s, the time step; 0 means chosen from the scene, see dem_step_advice_get
+        dt: s, the time step; 0 means chosen from the scene, see World.step_advice
         allow_large_dt: 1 allows dt above the stable limit, to show what happens then. It switches off all checks of
             the step: of contacts, speeds, walls and law_rate; a chosen dt is not shortened either.
         impact_speed: m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness from
             Young's modulus depend on it. 0 means the largest speed expected from grains, walls and height of fall for
             the time step, and 1 m/s for the stiffness.
-        response: DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order (docs/impulses.md)
-            for either value of integrator that it accepts, 0 and DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is
-            then the gap below which contacts are solved. If it is 0, dem.h takes three times the distance that the
-            fastest body moves in a step, at most the largest radius R and at least 0.1 R. On a periodic axis of
-            length P it is at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R.
-            The fields that follow apply to impulses only.; one of "springs", "impulses"
+        response: "impulses" needs dt > 0 and law None. Its steps are of second order (docs/impulses.md) for either
+            value of integrator that it accepts, 0 and "symplectic_euler". law_range (m) is then the gap below which
+            contacts are solved. If it is 0, dem.h takes three times the distance that the fastest body moves in a
+            step, at most the largest radius R and at least 0.1 R. On a periodic axis of length P it is at most 0.8
+            (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R. The fields that follow apply
+            to impulses only.; one of "springs", "impulses"
         cone: one of "coulomb", "convex"
         solver: one of "gauss_seidel", "jacobi", "apgd", "spectral"
         sweeps: most sweeps over all contacts in a step; 0 means 200
@@ -5074,8 +5662,8 @@ class World(WorldBase):
             root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the largest change is below
             30 times that.
         cold_start: 1 begins with zero impulses, not those of the last step
-        unsolved_stops: 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.
-            With 0 it continues; dem_counters_get, the report and dem_progress_print count such steps.
+        unsolved_stops: 1 ends the run with StoppedError after a step whose sweeps did not reach the tolerance. With 0
+            it continues; World.counters, the report and World.progress_print count such steps.
         search: one of "auto", "all_pairs", "grid", "linked_list", "hierarchical", "bins"
         skin: m, margin of the neighbour list; 0 means chosen for speed; < 0 means none: the list is rebuilt in every
             step.
@@ -5083,37 +5671,34 @@ class World(WorldBase):
         ellipsoid_overlap: one of "conservative", "chord", "normal"
         cluster_contacts: one of "merged", "separate"
         orientations: 1 follows the orientations of spheres too
-        overlap_stop: 0 to 1, in radii (see dem_counters.overlap_max): a step after which an overlap is larger ends
-            the run with DEM_ERROR_STOPPED, because grains are jammed or too soft. 0 means off. The report and
-            dem_progress_print name an overlap above 0.05.
-        ledger: 1 accounts for energy, see dem_ledger_get
+        overlap_stop: 0 to 1, in radii (see Counters.overlap_max): a step after which an overlap is larger ends the
+            run with StoppedError, because grains are jammed or too soft. 0 means off. The report and
+            World.progress_print name an overlap above 0.05.
+        ledger: 1 accounts for energy, see World.ledger
         threads: Largest number of threads, 0 to 64; 0 means as many as OpenMP offers, at most 64. Fewer are used
             while that is faster; results are the same.
         allocator: memory functions; 0 means malloc and free
         """
-        self._create(WorldDesc(gravity=gravity, domain=domain, boundary=boundary, planar=planar,
-            thickness=thickness, normal_law=normal_law, tangent_law=tangent_law, rolling_law=rolling_law,
-            tension=tension, friction_load=friction_load, slider=slider, convention=convention, law=law,
-            law_rows=law_rows, law_user=law_user, law_memory=law_memory, law_memory_names=law_memory_names,
-            law_vectors=law_vectors, law_stiffness=law_stiffness, law_range=law_range,
-            law_range_radii=law_range_radii, law_who=law_who, law_rate=law_rate, body_reals=body_reals,
-            body_reals_fn=body_reals_fn, body_reals_user=body_reals_user, growth=growth,
-            growth_user=growth_user, growth_interval=growth_interval, groups=groups, force=force,
-            body_force=body_force, force_user=force_user, integrator=integrator, dt=dt,
+        self._create(WorldDesc._of_call("World", dict(gravity=gravity, domain=domain, boundary=boundary,
+            planar=planar, thickness=thickness, normal_law=normal_law, tangent_law=tangent_law,
+            rolling_law=rolling_law, tension=tension, friction_load=friction_load, slider=slider,
+            convention=convention, law=law, law_rows=law_rows, law_user=law_user, law_memory=law_memory,
+            law_memory_names=law_memory_names, law_vectors=law_vectors, law_stiffness=law_stiffness,
+            law_range=law_range, law_range_radii=law_range_radii, law_who=law_who, law_rate=law_rate,
+            body_reals=body_reals, body_reals_fn=body_reals_fn, body_reals_user=body_reals_user,
+            growth=growth, growth_user=growth_user, growth_interval=growth_interval, groups=groups,
+            force=force, body_force=body_force, force_user=force_user, integrator=integrator, dt=dt,
             allow_large_dt=allow_large_dt, impact_speed=impact_speed, response=response, cone=cone,
             solver=solver, sweeps=sweeps, tolerance=tolerance, cold_start=cold_start,
             unsolved_stops=unsolved_stops, search=search, skin=skin, rotation=rotation,
             ellipsoid_overlap=ellipsoid_overlap, cluster_contacts=cluster_contacts,
             orientations=orientations, overlap_stop=overlap_stop, ledger=ledger, threads=threads,
-            allocator=allocator))
+            allocator=allocator)))
 
     @property
     def error(self):
-        """Returns the error message of the last call on this world that failed; "" if none failed. For a null world the
-        message says that it is null. If a call that builds the scene fails (names that end in _add, _fill or _pack;
-        dem_pair_set, dem_material_set, dem_wall_motion_set), the next run fails too and quotes its message. Otherwise
-        a scene without its floor would run and return DEM_OK. Runs work again once the program has called
-        dem_world_error_get or repeated the failed call with success.
+        """Returns the error message of the last call on this world that failed; "" if none failed. Exceptions have it
+        already.
         """
         return (_lib.dem_world_error_get(self._c) or b'').decode()
 
@@ -5122,6 +5707,8 @@ class World(WorldBase):
         """Returns the desc as given, with the present gravity, domain and dt, the search and integrator in use, and
         thickness and threads where they were 0. skin: present value; 0 before the first list or if desc.skin < 0.
         Other zeros stay 0, such as laws, sweeps and tolerance.
+
+        Returns: WorldDesc
         """
         found = _lib.dem_world_desc_get(self._c)
         self._ok(0)
@@ -5145,15 +5732,19 @@ class World(WorldBase):
         stiffness_ratio: kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu)
         stiffness_unloading: N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness.
         stiffness_adhesion: N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion
+        Returns: Material
         """
-        desc = MaterialDesc(density=density, young=young, poisson=poisson, restitution=restitution, friction=friction,
-            friction_static=friction_static, rolling_friction=rolling_friction, stiffness=stiffness,
-            stiffness_ratio=stiffness_ratio, stiffness_unloading=stiffness_unloading,
-            stiffness_adhesion=stiffness_adhesion)
+        desc = MaterialDesc._of_call('World.material', dict(density=density, young=young, poisson=poisson,
+            restitution=restitution, friction=friction, friction_static=friction_static,
+            rolling_friction=rolling_friction, stiffness=stiffness, stiffness_ratio=stiffness_ratio,
+            stiffness_unloading=stiffness_unloading, stiffness_adhesion=stiffness_adhesion))
         return self._id(_lib.dem_material_add(self._c, desc))
 
     def pair(self, a, b):
-        """Writes the contact properties of two materials to pair."""
+        """Returns the contact properties of two materials.
+
+        Returns: Pair
+        """
         pair = Pair()
         self._ok(_lib.dem_pair_get(self._c, a, b, pair))
         self._with(pair, 'call World.pair_set(...), which changes the fields that it is given')
@@ -5163,7 +5754,7 @@ class World(WorldBase):
             friction_static=None, rolling_friction=None, stiffness=None, stiffness_ratio=None, tangent_damping=None,
             normal_damping=None, spinning_friction=None, cohesion=None, compliance=None, stiffness_adhesion=None,
             ignored=None):
-        """Replaces the contact properties of two materials, in both orders. Start from dem_pair_get.
+        """Replaces the contact properties of two materials, in both orders. Start from World.pair.
 
         Fields that are not given stay as they are.
         young_eff: Pa, E*, > 0; may be 0 where `young` may
@@ -5179,7 +5770,7 @@ class World(WorldBase):
         normal_damping: N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
             restitution (linear) or none (hysteretic)
         spinning_friction: mu_spin, >= 0: twisting friction, a moment about the normal up to mu_spin R* Fn; 0 when
-            mixed. With springs: dem_law_twist.
+            mixed. With springs: dem.law_twist.
         cohesion: N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of the
             smaller radius.
         compliance: m/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable for
@@ -5189,18 +5780,20 @@ class World(WorldBase):
             act at a distance are not called for them. The energy of springs that are in contact when this is set goes
             to the residual of the ledger. Mixed: 0.
         """
-        pair = self.pair(a, b)
+        pair = _renamed(lambda: self.pair(a, b), 'World.pair', 'World.pair_set')
         pair._put({name: value for name, value in (('young_eff', young_eff), ('shear_eff', shear_eff), ('restitution',
             restitution), ('friction', friction), ('friction_static', friction_static), ('rolling_friction',
             rolling_friction), ('stiffness', stiffness), ('stiffness_ratio', stiffness_ratio), ('tangent_damping',
             tangent_damping), ('normal_damping', normal_damping), ('spinning_friction', spinning_friction),
             ('cohesion', cohesion), ('compliance', compliance), ('stiffness_adhesion', stiffness_adhesion),
-            ('ignored', ignored),) if value is not None})
+            ('ignored', ignored),) if value is not None}, 'World.pair_set: ')
         self._ok(_lib.dem_pair_set(self._c, a, b, pair))
 
     def coefficients(self, a, b, radius_a, radius_b):
         """Computes the coefficients for spheres of radius_a and radius_b (m). radius_b = 0 means a wall of material b.
         The impact speed is that of the desc, or 1 m/s if it is 0 there.
+
+        Returns: Coefficients
         """
         out = Coefficients()
         self._ok(_lib.dem_coefficients_get(self._c, a, b, radius_a, radius_b, out))
@@ -5214,12 +5807,15 @@ class World(WorldBase):
         return self._print(_lib.dem_pairs_print, out, self._c)
 
     def sphere(self, material, radius, position):
-        """Adds a sphere, or in a planar world a disc, at rest. radius > 0 and position in m."""
+        """Adds a sphere, or in a planar world a disc, at rest. radius > 0 and position in m.
+
+        Returns: Body
+        """
         return self._id(_lib.dem_sphere_add(self._c, material, radius, position))
 
     def spheres(self, material, positions, velocities=None, radii=None, radius=0):
-        """Adds count spheres, all or none. positions: count x 3, m. velocities: count x 3, m/s, or null for rest. radii:
-        count, m, or null if all have `radius`.
+        """Adds count spheres, all or none. positions: count x 3, m. velocities: count x 3, m/s, or None for rest. radii:
+        count, m, or None if all have `radius`.
         """
         positions = _array_of(positions, Real, 'World.spheres: positions', 3)
         count = len(positions)//3
@@ -5231,43 +5827,45 @@ class World(WorldBase):
         """Adds up to count spheres of one radius (m) at random positions in a region, one after the other. The same seed
         gives the same positions. A position is free if the sphere there overlaps no body (a body that is not a sphere
         counts with its bounding sphere), also across periodic faces, and touches no wall. What the material ignores
-        (dem_pair) does not count. No position is free behind a plane, on the wrong side of a cylinder or in a sieve;
-        the inside of a closed mesh counts like its outside. Returns how many were added. If these are fewer than
-        count, 2000 tries for one sphere failed; dem_world_error_get says so, but the world can run.
+        (Pair) does not count. No position is free behind a plane, on the wrong side of a cylinder or in a sieve; the
+        inside of a closed mesh counts like its outside. Returns how many were added. If these are fewer than count,
+        2000 tries for one sphere failed; World.error says so, but the world can run.
         """
         return self._filled(_lib.dem_spheres_fill(self._c, material, radius, self._bound(_struct_of(Region, region,
             'World.spheres_fill: region')), count, seed), count, 'dem_spheres_fill')
 
     def sizes_finer(self, sizes, radius):
-        """Returns the fraction finer than a radius (m), of mass or number as by_count says; -1 on error."""
+        """Returns the fraction finer than a radius (m), of mass or number as by_count says."""
         sizes = self._bound(_struct_of(Sizes, sizes, 'World.sizes_finer: sizes'))
         return self._number(_lib.dem_sizes_finer_get(self._c, sizes, radius))
 
     def sizes_draw(self, sizes, count, seed):
         """Draws count radii (m) at random or, with seed 0, at equal steps of the distribution of numbers, ascending:
         then a few hundred radii represent it within 1 %. Mass is proportional to r^3, in planar worlds to r^2.
+
+        Returns: Row
         """
         sizes = self._bound(_struct_of(Sizes, sizes, 'World.sizes_draw: sizes'))
-        radii = (Real*_size_of(count, 'World.sizes_draw: count'))()
+        radii = _row(Real, _size_of(count, 'World.sizes_draw: count'))()
         self._ok(_lib.dem_sizes_draw(self._c, sizes, count, seed, ctypes.cast(radii, ctypes.POINTER(Real))))
         return radii
 
     def sizes_classes(self, sizes, class_count):
         """Divides a distribution into at most class_count (1 to 16) classes, whose bounds have equal ratios, for the
-        fields radius and amount of dem_feed_desc (with by_mass = 1 - by_count). radius (m) is that of a grain of the
-        mean mass of its class; the amounts sum to 1. Returns the number of classes that are not empty; 0 on error.
+        fields radius and amount of FeedDesc (with by_mass = 1 - by_count). radius (m) is that of a grain of the mean
+        mass of its class; the amounts sum to 1. Returns the radii and the amounts of the classes that are not empty.
         """
         sizes = self._bound(_struct_of(Sizes, sizes, 'World.sizes_classes: sizes'))
-        radius = (Real*_size_of(class_count, 'World.sizes_classes: class_count'))()
-        amount = (ctypes.c_double*_size_of(class_count, 'World.sizes_classes: class_count'))()
+        radius = _row(Real, _size_of(class_count, 'World.sizes_classes: class_count'))()
+        amount = _row(ctypes.c_double, _size_of(class_count, 'World.sizes_classes: class_count'))()
         found = _lib.dem_sizes_classes_get(self._c, sizes, class_count, ctypes.cast(radius, ctypes.POINTER(Real)),
             ctypes.cast(amount, ctypes.POINTER(ctypes.c_double)))
         self._filled(found, 0, 'dem_sizes_classes_get')
         return list(radius[:found]), list(amount[:found])
 
     def sizes_fill(self, material, sizes, region, count, seed):
-        """Adds up to count spheres, as dem_spheres_fill does, with radii as dem_sizes_draw gives them for its seed 0,
-        largest first, while there is most room. seed is for the positions.
+        """Adds up to count spheres, as World.spheres_fill does, with radii as World.sizes_draw gives them for its seed
+        0, largest first, while there is most room. seed is for the positions.
         """
         sizes = self._bound(_struct_of(Sizes, sizes, 'World.sizes_fill: sizes'))
         return self._filled(_lib.dem_sizes_fill(self._c, material, sizes, self._bound(_struct_of(Region, region,
@@ -5276,8 +5874,8 @@ class World(WorldBase):
     def spheres_pack(self, material, radius, padding, region, count=0):
         """Adds spheres on a hexagonal close packing, in layers along z, with a gap of padding (m, >= 0) between
         surfaces: at most count (0: all that fit), at those sites that lie in the region and are free as in
-        dem_spheres_fill. In a planar world the packing is a triangular lattice. Spheres at opposite periodic faces do
-        not overlap, but the lattice does not continue across the faces. Returns how many were added.
+        World.spheres_fill. In a planar world the packing is a triangular lattice. Spheres at opposite periodic faces
+        do not overlap, but the lattice does not continue across the faces. Returns how many were added.
         """
         return self._filled(_lib.dem_spheres_pack(self._c, material, radius, padding, self._bound(_struct_of(Region,
             region, 'World.spheres_pack: region')), count), count, 'dem_spheres_pack')
@@ -5301,17 +5899,28 @@ class World(WorldBase):
 
     @property
     def bodies_memory(self):
-        """Returns the arrays of all bodies; zeros for a null world."""
+        """Returns the arrays of all bodies.
+
+        Returns: Bodies
+        """
         found = _lib.dem_bodies_get(self._c)
         self._ok(0)
         return self._with(found)
 
     def body_id(self, index):
-        """Returns the id of the body at this index of the arrays; zeros if there is none."""
+        """Returns the id of the body at this index of the arrays.
+
+        Returns: Body
+        """
         return self.bodies[index]
 
     def group(self, name):
-        """Returns the group with this name in desc.groups."""
+        """Returns the group with this name in desc.groups.
+
+        Returns: Group
+        """
+        if not self.desc.groups:
+            raise _no_groups(name)
         found = _lib.dem_group_get(self._c, _text_of(name, 'World.group: name'))
         self._ok(0)
         if not found:
@@ -5320,83 +5929,79 @@ class World(WorldBase):
         return found
 
     def bodies_select(self, selection):
-        """Writes the ids of the selected bodies, in the order of their slots, at most `capacity` of them. Returns how
-        many are selected, -1 on error. `out` or null, to count them. Selections are made between steps: laws and
-        other functions that a step calls cannot make them.
+        """Returns the ids of the selected bodies, in the order of their slots. Selections are made between steps: laws
+        and other functions that a step calls cannot make them.
+
+        Returns: a list of Body
         """
         selection = self._bound(_struct_of(Selection, selection, 'World.bodies_select: selection'))
         capacity = self._number(_lib.dem_bodies_select(self._c, selection, None, 0))
-        out = (Body*max(capacity, 1))()
+        out = _row(Body, max(capacity, 1))()
         count = self._number(_lib.dem_bodies_select(self._c, selection, ctypes.cast(out, ctypes.POINTER(Body)),
             capacity))
-        array = (out._type_*count).from_buffer(out)
+        array = _row(out._type_, count).from_buffer(out)
         return [item.of(self) for item in array]
 
     def bodies_group_set(self, selection, group, member):
         """Makes the selected bodies members of a group (member = 1), or takes them out (0). A body may be in many
         groups. Members stay members when bodies are sorted, restarted or dealt to slabs. Returns how many bodies are
-        selected, -1 on error.
+        selected.
         """
         selection = self._bound(_struct_of(Selection, selection, 'World.bodies_group_set: selection'))
         return self._number(_lib.dem_bodies_group_set(self._c, selection, group, member))
 
     def bodies_velocity_set(self, selection, velocity, spin):
-        """Gives the selected bodies a velocity (m/s) and a spin (rad/s), as dem_body_set does. Returns their number, -1
-        on error.
-        """
+        """Gives the selected bodies a velocity (m/s) and a spin (rad/s), as Body.set does. Returns their number."""
         selection = self._bound(_struct_of(Selection, selection, 'World.bodies_velocity_set: selection'))
         return self._number(_lib.dem_bodies_velocity_set(self._c, selection, velocity, spin))
 
     def bodies_fixed_set(self, selection, fixed):
-        """Freezes the selected bodies (fixed = 1), which then never move, or frees them (0). Returns their number, -1 on
-        error.
-        """
+        """Freezes the selected bodies (fixed = 1), which then never move, or frees them (0). Returns their number."""
         selection = self._bound(_struct_of(Selection, selection, 'World.bodies_fixed_set: selection'))
         return self._number(_lib.dem_bodies_fixed_set(self._c, selection, fixed))
 
     def bodies_remove(self, *, group=None, material=None, shape=None, radius_min=0, radius_max=0, region=None,
             count=0, bodies=None):
-        """Removes the selected bodies, with one new list for all. Returns their number, -1 on error.
+        """Removes the selected bodies, with one new list for all. Returns their number.
 
-        group: only members of this group; id 0 means any
-        material: only of this material; id 0 means any
-        shape: only of this shape; id 0 means any, spheres included
+        group: only members of this group; None means any
+        material: only of this material; None means any
+        shape: only of this shape; None means any, spheres included
         radius_min: m, only of these (bounding) radii; max 0 means no limit
-        region: Only bodies whose centre is in this region, or on a periodic axis one of its images. Null means
+        region: Only bodies whose centre is in this region, or on a periodic axis one of its images. None means
             anywhere.
-        count: of bodies
-        bodies: Only these; ids of bodies that are gone do not count. Null means any.
+        bodies: Only these; ids of bodies that are gone do not count. None means any.
         """
-        selection = Selection(group=group, material=material, shape=shape, radius_min=radius_min,
-            radius_max=radius_max, region=region, count=count, bodies=bodies)
+        selection = Selection._of_call('World.bodies_remove', dict(group=group, material=material, shape=shape,
+            radius_min=radius_min, radius_max=radius_max, region=region, count=count, bodies=bodies))
         selection = self._bound(selection)
         return self._number(_lib.dem_bodies_remove(self._c, selection))
 
     def bodies_means(self, *, group=None, material=None, shape=None, radius_min=0, radius_max=0, region=None,
             count=0, bodies=None):
-        """Writes the sums and means of the selected bodies to `means`.
+        """Returns the sums and means of the selected bodies.
 
-        group: only members of this group; id 0 means any
-        material: only of this material; id 0 means any
-        shape: only of this shape; id 0 means any, spheres included
+        group: only members of this group; None means any
+        material: only of this material; None means any
+        shape: only of this shape; None means any, spheres included
         radius_min: m, only of these (bounding) radii; max 0 means no limit
-        region: Only bodies whose centre is in this region, or on a periodic axis one of its images. Null means
+        region: Only bodies whose centre is in this region, or on a periodic axis one of its images. None means
             anywhere.
-        count: of bodies
-        bodies: Only these; ids of bodies that are gone do not count. Null means any.
+        bodies: Only these; ids of bodies that are gone do not count. None means any.
+        Returns: BodiesMeans
         """
         means = BodiesMeans()
-        selection = Selection(group=group, material=material, shape=shape, radius_min=radius_min,
-            radius_max=radius_max, region=region, count=count, bodies=bodies)
+        selection = Selection._of_call('World.bodies_means', dict(group=group, material=material, shape=shape,
+            radius_min=radius_min, radius_max=radius_max, region=region, count=count, bodies=bodies))
         selection = self._bound(selection)
         self._ok(_lib.dem_bodies_means_get(self._c, selection, means))
         self._with(means)
         return means
 
     def bodies_reals_set(self, reals):
-        """The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the order of
-        dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it (_set). Values must be
-        finite. Laws use them from the next step on. It is an error if desc.body_reals names none.
+        """The numbers (World(body_reals=...)) of all bodies, count x real_count: sets them, in the order of
+        world.bodies_memory. Values must be finite. Laws use them from the next step on. It is an error if the world
+        has no names of such numbers.
         """
         reals = _array_of(reals, Real, 'World.bodies_reals_set: reals', max(self._context.reals, 1),
             self.bodies.count)
@@ -5405,6 +6010,8 @@ class World(WorldBase):
     def shape_ellipsoid(self, semi_axes):
         """Adds an ellipsoid with these semi-axes (m, > 0) along x, y and z of its frame. The longest may be at most 1000
         times the shortest. Not in planar worlds.
+
+        Returns: Shape
         """
         return self._id(_lib.dem_shape_ellipsoid_add(self._c, semi_axes))
 
@@ -5412,41 +6019,45 @@ class World(WorldBase):
             centre=None, inertia=()):
         """Adds a cluster and computes its principal axes. Not in planar worlds.
 
-        count: required, 1 to 1000: number of spheres
         positions: m, required: count x 3
-        radii: m, > 0: one each; null means that all have `radius`
-        radius: m, of all spheres if radii is null
+        radii: m, > 0: one each; None means that all have `radius`
+        radius: m, of all spheres if radii is None
         mass: one of "union", "sum", "given"
-        rays: DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; 0 means 512. It is an error if rays are
-            more than a quarter of the smallest radius apart.
-        volume: The rest is for DEM_CLUSTER_GIVEN.
-        centre: m3
+        rays: "union": rays per side of the outline, 16 to 4096; 0 means 512. It is an error if rays are more than a
+            quarter of the smallest radius apart.
+        volume: m3. The rest is for "given".
+        centre: m, centre of mass
         inertia: m5, moments of inertia about the centre per density: xx, yy, zz, xy, xz, yz. Off-diagonal ones are
             elements of the tensor: xy is -(integral of x y).
+        Returns: Shape
         """
-        desc = ClusterDesc(count=count, positions=positions, radii=radii, radius=radius, mass=mass, rays=rays,
-            volume=volume, centre=centre, inertia=inertia)
+        desc = ClusterDesc._of_call('World.shape_cluster', dict(count=count, positions=positions, radii=radii,
+            radius=radius, mass=mass, rays=rays, volume=volume, centre=centre, inertia=inertia))
         return self._id(_lib.dem_shape_cluster_add(self._c, desc))
 
     def shape_polyhedron(self, points):
         """Adds a convex polyhedron: the convex hull of points (count x 3, m, 4 to 10,000), in a frame of your choice.
         Points inside the hull, or within 1e-10 of its size (single precision: 1e-6) of a face, are dropped. If more
-        than DEM_POLYHEDRON_FACES faces remain, this tolerance is raised up to 1e-5. It is an error if still more
+        than dem.POLYHEDRON_FACES faces remain, this tolerance is raised up to 1e-5. It is an error if still more
         remain, or if the points lie in a plane. Not in planar worlds. Two polyhedra repel each other by a pressure
-        field in the volume they share ([ELA19], >>polyhedra), a polyhedron and a sphere or ellipsoid at the nearest
-        point. dem_contacts_get reports a contact of two polyhedra, or of one with a wall, as four points over which
-        its force is spread; counters count it once. With impulses it has up to four points, each with its own gap
-        (>>gaps); counters count the points with a repulsive force.
+        field in the volume they share ([ELA19]), a polyhedron and a sphere or ellipsoid at the nearest point.
+        World.contacts reports a contact of two polyhedra, or of one with a wall, as four points over which its force
+        is spread; counters count it once. With impulses it has up to four points, each with its own gap; counters
+        count the points with a repulsive force.
+
+        Returns: Shape
         """
         points = _array_of(points, Real, 'World.shape_polyhedron: points', 3)
         count = len(points)//3
         return self._id(_lib.dem_shape_polyhedron_add(self._c, count, points))
 
     def shape_mesh(self, mesh, dent=0):
-        """Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if the mesh lies
+        """Adds the convex hull of a mesh (World.mesh_read: STL, OBJ). It is an error, which says where, if the mesh lies
         deeper inside its hull than dent (m, >= 0; 0 accepts convex meshes only, up to round-off). The mesh must bound
-        a body, as for dem_mesh_spheres; for an open mesh pass its vertices to dem_shape_polyhedron_add. Not in planar
+        a body, as for World.mesh_spheres; for an open mesh pass its vertices to World.shape_polyhedron. Not in planar
         worlds.
+
+        Returns: Shape
         """
         mesh = self._bound(_struct_of(Mesh, mesh, 'World.shape_mesh: mesh'))
         return self._id(_lib.dem_shape_mesh_add(self._c, mesh, dent))
@@ -5454,8 +6065,10 @@ class World(WorldBase):
     def shape_union(self, shapes, positions=None, orientations=None):
         """Adds a union: count (1 to 1000) polyhedra, polygons or ellipsoids as one rigid body, in a frame of your
         choice. Each piece is a shape of this world, with a position (count x 3, m) and an orientation (count x 4;
-        null means none is rotated). Mass, moments and contact forces are the sums over the pieces: overlapping pieces
+        None means none is rotated). Mass, moments and contact forces are the sums over the pieces: overlapping pieces
         count twice. Clusters and unions cannot be pieces.
+
+        Returns: Shape
         """
         shapes = _array_of(shapes, Shape, 'World.shape_union: shapes', 1)
         count = len(shapes)
@@ -5468,6 +6081,8 @@ class World(WorldBase):
         concave polygon becomes the union of convex pieces, which are shapes too. The mass is density x area x
         desc.thickness. For contacts the polygon is a prism of thickness 4/3 sqrt(area/pi), which gives it the volume
         of the sphere with the same area of cross-section. It is an error if sides cross.
+
+        Returns: Shape
         """
         points = _array_of(points, Real, 'World.shape_polygon: points', 2)
         count = len(points)//2
@@ -5476,16 +6091,18 @@ class World(WorldBase):
     def body(self, material, shape, position, orientation=(1, 0, 0, 0)):
         """Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by orientation (any length
         but 0) from the frame in which the shape was given. It is an error if a wall has no contact with this shape:
-        DEM_EDGE_FRACTION profiles and some sieves (dem_sieve_kind) have none with ellipsoids and polyhedra; sieves,
-        cones and other surfaces of revolution have none with polygons.
+        "fraction" profiles and some sieves (SieveKind) have none with ellipsoids and polyhedra; sieves, cones and
+        other surfaces of revolution have none with polygons.
+
+        Returns: Body
         """
         return self._id(_lib.dem_body_add(self._c, material, shape, position, orientation))
 
     def bodies_add(self, material, shape, positions, orientations=None, velocities=None, spins=None,
             scales=None):
-        """Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null: orientations
-        (count x 4: w, x, y, z; null: not rotated), velocities and spins (count x 3: m/s and rad/s in the world's
-        frame; null: at rest), scales (count, > 0: factor on all lengths of the shape; null: 1).
+        """Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be None: orientations
+        (count x 4: w, x, y, z; None: not rotated), velocities and spins (count x 3: m/s and rad/s in the world's
+        frame; None: at rest), scales (count, > 0: factor on all lengths of the shape; None: 1).
         """
         positions = _array_of(positions, Real, 'World.bodies_add: positions', 3)
         count = len(positions)//3
@@ -5497,7 +6114,7 @@ class World(WorldBase):
             scales))
 
     def bodies_fill(self, material, shape, region, count, seed):
-        """Adds up to count bodies of a shape in random orientations, as dem_spheres_fill does. Bounding spheres do not
+        """Adds up to count bodies of a shape in random orientations, as World.spheres_fill does. Bounding spheres do not
         overlap, so that every body is free to rotate.
         """
         return self._filled(_lib.dem_bodies_fill(self._c, material, shape, self._bound(_struct_of(Region, region,
@@ -5505,28 +6122,38 @@ class World(WorldBase):
 
     @property
     def body_counts(self):
-        """Returns the numbers of bodies."""
+        """Returns the numbers of bodies.
+
+        Returns: BodyCounts
+        """
         found = _lib.dem_body_counts_get(self._c)
         self._ok(0)
         return self._with(found)
 
     def wall_plane(self, material, point, normal):
-        """Adds a plane through point (m). Grains are on the side to which normal points."""
+        """Adds a plane through point (m). Grains are on the side to which normal points.
+
+        Returns: Wall
+        """
         return self._id(_lib.dem_wall_plane_add(self._c, material, point, normal))
 
     def wall_cylinder(self, material, point, axis, radius, inside):
         """Adds an infinite cylinder of radius (m) about an axis through point (m). Grains are inside if inside = 1, and
         outside if inside = 0.
+
+        Returns: Wall
         """
         return self._id(_lib.dem_wall_cylinder_add(self._c, material, point, axis, radius, inside))
 
     def wall_revolved(self, material, point, axis, radii, heights):
-        """Adds a surface of revolution about an axis through point (m): straight pieces between count (2 to DEM_RINGS)
+        """Adds a surface of revolution about an axis through point (m): straight pieces between count (2 to dem.RINGS)
         rings of these radii (m, >= 0) at these heights (m, along the axis from point). It can be a finite cylinder, a
         cone, a disc with a hole, a tube with a funnel or a drum with its ends. Both sides repel. In an inner corner a
         grain touches both pieces; at an outer corner and at a rim it touches the ring. A grain too wide for a narrow
-        part touches one side of it only. Ellipsoids and, with springs, polyhedra touch facets in its place
-        (>>tessellate). Polygons have no contact with it; use a profile.
+        part touches one side of it only. Ellipsoids and, with springs, polyhedra touch facets in its place. Polygons
+        have no contact with it; use a profile.
+
+        Returns: Wall
         """
         radii = _array_of(radii, Real, 'World.wall_revolved: radii', 1)
         count = len(radii)
@@ -5536,18 +6163,25 @@ class World(WorldBase):
     def wall_cone(self, material, from_, to, radius_from, radius_to):
         """Adds one piece of a surface of revolution: an open cone between two points (m) with these radii (m, >= 0, not
         both 0). Equal radii make a finite cylinder.
+
+        Returns: Wall
         """
         return self._id(_lib.dem_wall_cone_add(self._c, material, from_, to, radius_from, radius_to))
 
     def wall_profile(self, material, profile, rule=0):
-        """Adds a profile: segments in the x-y plane, extruded along z without end. Both sides repel."""
+        """Adds a profile: segments in the x-y plane, extruded along z without end. Both sides repel.
+
+        Returns: Wall
+        """
         profile = self._bound(_struct_of(Profile, profile, 'World.wall_profile: profile'))
         return self._id(_lib.dem_wall_profile_add(self._c, material, profile, _enum_of(rule, EdgeRule,
             'World.wall_profile: rule')))
 
     def wall_mesh(self, material, mesh):
         """Adds a triangle mesh. Both sides repel. Meshes that do not move relative to each other act as one surface,
-        however it is divided; so do profiles (>>surfaces). A wall is at rest until its motion begins.
+        however it is divided; so do profiles. A wall is at rest until its motion begins.
+
+        Returns: Wall
         """
         mesh = self._bound(_struct_of(Mesh, mesh, 'World.wall_mesh: mesh'))
         return self._id(_lib.dem_wall_mesh_add(self._c, material, mesh))
@@ -5555,6 +6189,8 @@ class World(WorldBase):
     def wall_grains(self, material, positions, radius, share):
         """Adds a wall of spheres of one radius (m) at positions (count x 3, m), as in [MIL]. All forces are multiplied
         by share (0 < share <= 1), because overlapping spheres represent one surface.
+
+        Returns: Wall
         """
         positions = _array_of(positions, Real, 'World.wall_grains: positions', 3)
         count = len(positions)//3
@@ -5581,40 +6217,42 @@ class World(WorldBase):
             of the middle of the hole in both directions: b = aperture/2 - radius (model 0 or 1) or aperture/2 (model
             2) [ALK07] eq 4.20, 4.21. Once it falls, it falls to the end.
         clearance: reduced holes: 0 open, 1 closed; zeta of [ALK07]
+        Returns: Wall
         """
-        desc = SieveDesc(kind=kind, point=point, normal=normal, along=along, aperture=aperture, bar=bar,
-            length=length, thickness=thickness, lift=lift, staggered=staggered, radius=radius, model=model,
-            clearance=clearance)
+        desc = SieveDesc._of_call('World.wall_sieve', dict(kind=kind, point=point, normal=normal, along=along,
+            aperture=aperture, bar=bar, length=length, thickness=thickness, lift=lift, staggered=staggered,
+            radius=radius, model=model, clearance=clearance))
         return self._id(_lib.dem_wall_sieve_add(self._c, material, desc))
 
     def sieve_blinded(self, sieve, speed=0):
         """Returns how many grains, clusters included, blind a sieve. Such a grain is stuck in a hole: it touches the
         sieve on opposite sides, and the wedge between the two contacts is so narrow that friction holds the grain.
-        Grains faster than speed (m/s, relative to the sieve; 0 means any) do not count. Reduced holes never blind.
-        Returns -1 on error, also while there is no list of contacts (see dem_contacts_get).
+        Grains faster than speed (m/s, relative to the sieve; 0 means any) do not count. Reduced holes never blind. It
+        is an error while there is no list of contacts (see World.contacts).
         """
         return self._number(_lib.dem_sieve_blinded_get(self._c, sieve, speed))
 
     def joint(self, *, kind=0, motor=0, a=None, b=None, wall=None, collide=0, point=None, axis=None, speed=0,
             torque=0):
-        """Adds a joint. It is an error if the response is DEM_RESPONSE_SPRINGS, if neither of the two can move, or if a
-        sphere is joined without desc.orientations. A joint ends when one of its bodies or its wall is removed or
-        leaves; its id is then invalid and is never used again. While both bodies are fixed, force, torque and power
-        are 0; the joint acts again when one is released. Checkpoints contain joints.
+        """Adds a joint. It is an error if the response is "springs", if neither of the two can move, or if a sphere is
+        joined without desc.orientations. A joint ends when one of its bodies or its wall is removed or leaves; its id
+        is then invalid and is never used again. While both bodies are fixed, force, torque and power are 0; the joint
+        acts again when one is released. Checkpoints contain joints.
 
         kind: required: how the two are joined; one of "none", "point", "revolute"
         motor: one of "none", "speed", "torque"
-        a: a is required; b null means `wall`, or space
-        wall: if b is null: moves with it; null means space, at rest
+        a: required
+        b: None means `wall`, or space
+        wall: if b is None: moves with it; None means space, at rest
         collide: 1: the two bodies may touch each other
         point: m, where the two are joined
         axis: of a revolute joint, not 0; planar worlds: along z
         speed: rad/s, of a against b about axis, right-handed; at most 1e12 in size
-        torque: N m, on a about axis; at most 1e12 in size. DEM_MOTOR_SPEED: the largest torque, >= 0; 0 means no
-            limit.
+        torque: N m, on a about axis; at most 1e12 in size. "speed": the largest torque, >= 0; 0 means no limit.
+        Returns: Joint
         """
-        desc = JointDesc(kind=kind, motor=motor, a=a, b=b, wall=wall, collide=collide, point=point, axis=axis,
-            speed=speed, torque=torque)
+        desc = JointDesc._of_call('World.joint', dict(kind=kind, motor=motor, a=a, b=b, wall=wall, collide=collide,
+            point=point, axis=axis, speed=speed, torque=torque))
         desc = self._bound(desc)
         return self._id(_lib.dem_joint_add(self._c, desc))
 
@@ -5624,7 +6262,6 @@ class World(WorldBase):
         """Adds a feed.
 
         material: required
-        class_count: required, 1 to 16: size classes
         radius: m, required
         amount: > 0: relative amounts of the classes, or with `limited` grains (kg with by_mass)
         limited: 1: the feed ends after `amount`, drawn without replacement
@@ -5632,19 +6269,20 @@ class World(WorldBase):
         rate: 1/s, grains due; 0 means all as room permits, and needs limited
         start: s, time of the world. A feed that is added later catches up with what was due since start.
         end: s, 0 or >= start; 0 means no end
-        box: m, required: centres lie inside (dem_region: whole bodies)
+        box: m, required: centres lie inside (Region: whole bodies)
         round: 1: only the vertical elliptic cylinder inscribed in the box
         velocity: m/s, of new grains
         spread: m/s, largest random change of each component of velocity
         seed: of random positions, sizes and velocities
-        inside: restricts the box further, as in dem_region
-        inside_user: passed to inside
+        inside: restricts the box further, as in Region
         materials: A mixture: for each class, if not 0, its material; its shape, in random orientations and with the
             volume of a sphere of `radius`; and the distribution of its radius (copied).
+        Returns: Feed
         """
-        desc = FeedDesc(material=material, class_count=class_count, radius=radius, amount=amount, limited=limited,
-            by_mass=by_mass, rate=rate, start=start, end=end, box=box, round=round, velocity=velocity, spread=spread,
-            seed=seed, inside=inside, inside_user=inside_user, materials=materials, shapes=shapes, sizes=sizes)
+        desc = FeedDesc._of_call('World.feed', dict(material=material, class_count=class_count, radius=radius,
+            amount=amount, limited=limited, by_mass=by_mass, rate=rate, start=start, end=end, box=box, round=round,
+            velocity=velocity, spread=spread, seed=seed, inside=inside, inside_user=inside_user, materials=materials,
+            shapes=shapes, sizes=sizes))
         desc = self._bound(desc)
         return self._id(_lib.dem_feed_add(self._c, desc))
 
@@ -5652,19 +6290,20 @@ class World(WorldBase):
             material=None, keep=0, residence_bin=0):
         """Adds an outlet. The wall that is its frame cannot be removed.
 
-        frame: the region moves with this wall; null means at rest
+        frame: the region moves with this wall; None means at rest
         box: m, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0)
         beyond: m: only grains this far or farther from the frame's z axis
         wanted_min: m, radii meant to leave here; max 0 means no limit
-        class_count: size classes to count in, 0 to 16
         radius: m, ascending; a grain counts in the nearest class
-        material: only grains of this material; id 0 means all
+        material: only grains of this material; None means all
         keep: 1: grains stay and are only counted; at most 16 such
         residence_bin: s, >= 0: width of a bin of residence times, which run from the insertion of a grain (grains
-            that were there before: from dem_outlet_add) until the outlet counts it; 0: not measured
+            that were there before: from World.outlet) until the outlet counts it; 0: not measured
+        Returns: Outlet
         """
-        desc = OutletDesc(frame=frame, box=box, beyond=beyond, wanted_min=wanted_min, wanted_max=wanted_max,
-            class_count=class_count, radius=radius, material=material, keep=keep, residence_bin=residence_bin)
+        desc = OutletDesc._of_call('World.outlet', dict(frame=frame, box=box, beyond=beyond, wanted_min=wanted_min,
+            wanted_max=wanted_max, class_count=class_count, radius=radius, material=material, keep=keep,
+            residence_bin=residence_bin))
         desc = self._bound(desc)
         return self._id(_lib.dem_outlet_add(self._c, desc))
 
@@ -5672,9 +6311,11 @@ class World(WorldBase):
     def step_advice(self):
         """Computes the time step that the scene allows as it is now, feeds included. It considers contacts to come.
         Contacts that are already compressed are examined when a run begins, and at least every 1000 steps later
-        (every eight with desc.law_rate). If the step is too large for them, a given desc.dt makes dem_world_step
-        return DEM_ERROR_TIME_STEP, and a chosen step is made smaller. An error if no grain can move, or with
-        DEM_RESPONSE_IMPULSES, where contacts have no duration.
+        (every eight with desc.law_rate). If the step is too large for them, a given desc.dt makes World.step raise
+        TimeStepError, and a chosen step is made smaller. An error if no grain can move, or with "impulses", where
+        contacts have no duration.
+
+        Returns: Advice
         """
         advice = Advice()
         self._ok(_lib.dem_step_advice_get(self._c, advice))
@@ -5682,44 +6323,45 @@ class World(WorldBase):
         return advice
 
     def check(self):
-        """Looks for likely mistakes before a scene runs, and returns how many it found (0 if the call fails). Writes at
-        most `capacity` findings, the most severe first; `findings` or null. Nothing moves; the neighbour list is
-        rebuilt if it is out of date. It reports - grains that overlap each other or a wall by more than 1 % of their
-        radius; - grains inside a closed mesh, profile or surface of revolution while others are outside, also grains
-        that feeds will insert. A container that holds all grains is not reported. A mesh is closed if each edge has
-        two triangles; walls that move together count as one mesh; - overlaps above 5 % of a radius to be expected
-        from speed or weight, with the modulus that would keep them below 1 %; - values that suggest units other than
-        m, kg/m3 and Pa; - positions so far from the origin that their last digits do not resolve overlaps; - scenes
-        in which nothing moves, or grains fall for ever; - grains outside an outflow boundary, walls that no grain can
-        reach, materials without use; - a time step that is too large, or 20 times smaller than necessary.
+        """Looks for likely mistakes before a scene runs, and returns them, the most severe first. Nothing moves; the
+        neighbour list is rebuilt if it is out of date. It reports - grains that overlap each other or a wall by more
+        than 1 % of their radius; - grains inside a closed mesh, profile or surface of revolution while others are
+        outside, also grains that feeds will insert. A container that holds all grains is not reported. A mesh is
+        closed if each edge has two triangles; walls that move together count as one mesh; - overlaps above 5 % of a
+        radius to be expected from speed or weight, with the modulus that would keep them below 1 %; - values that
+        suggest units other than m, kg/m3 and Pa; - positions so far from the origin that their last digits do not
+        resolve overlaps; - scenes in which nothing moves, or grains fall for ever; - grains outside an outflow
+        boundary, walls that no grain can reach, materials without use; - a time step that is too large, or 20 times
+        smaller than necessary.
+
+        Returns: a list of Finding
         """
         capacity = 64
-        findings = (Finding*max(capacity, 1))()
+        findings = _row(Finding, max(capacity, 1))()
         count = self._number(_lib.dem_world_check(self._c, ctypes.cast(findings, ctypes.POINTER(Finding)), capacity))
-        return list(findings[:min(count, len(findings))])
+        return list(_fixed(findings)[:min(count, len(findings))])
 
     def check_print(self, out=None):
-        """Prints the first 16 findings of dem_world_check, one per line (nothing if there are none), and returns how
-        many it found.
+        """Prints the first 16 findings of World.check, one per line (nothing if there are none), and returns how many it
+        found.
         """
         return self._print(_lib.dem_world_check_print, out, self._c)
 
     def step(self, steps):
         """Advances the world by `steps` time steps (>= 0), or to the first step that fails. The error message names that
         step; the steps before it are kept. The first step is not taken while the error message of a call that builds
-        the scene is unread (dem_world_error_get). Errors: DEM_ERROR_ARGUMENT an unread message (above), or a scene
-        that cannot run, such as a period that is too short, or rolling friction with a solver that ignores it
-        DEM_ERROR_TIME_STEP the step is too large for the contacts, or a body or wall would move by more than the
-        smallest radius (a body under impulses: by more than this and more than half the range below which contacts
-        are solved), a body that is not a sphere rotate by more than 1 rad, a cell strain by more than 0.01
-        DEM_ERROR_UNSTABLE a position, velocity, force or number of a body is not finite, two bodies overlap by the
-        smaller radius, a body and a wall by that of the body, or a motion or desc.growth returns impossible values
-        DEM_ERROR_FILE, DEM_ERROR_FORMAT an output cannot be written; its CSV has other columns. The next call writes
-        it, also one of 0 steps. DEM_ERROR_STOPPED an output stopped the run; desc.unsolved_stops is 1 and the sweeps
-        of a step did not reach the tolerance; or an overlap is above desc.overlap_stop. The step is complete.
-        DEM_ERROR_MEMORY The bodies and the time may have moved already. The step counts (dem_world_steps_get) when it
-        is complete: the next call completes it as its first step, here or in a world that has read a checkpoint
-        written meanwhile. The bits are those of a run without the interruption.
+        the scene is unread (World.error). Errors: ArgumentError an unread message (above), or a scene that cannot
+        run, such as a period that is too short, or rolling friction with a solver that ignores it TimeStepError the
+        step is too large for the contacts, or a body or wall would move by more than the smallest radius (a body
+        under impulses: by more than this and more than half the range below which contacts are solved), a body that
+        is not a sphere rotate by more than 1 rad, a cell strain by more than 0.01 UnstableError a position, velocity,
+        force or number of a body is not finite, two bodies overlap by the smaller radius, a body and a wall by that
+        of the body, or a motion or desc.growth returns impossible values FileError, FormatError an output cannot be
+        written; its CSV has other columns. The next call writes it, also one of 0 steps. StoppedError an output
+        stopped the run; desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance; or an overlap
+        is above desc.overlap_stop. The step is complete. MemoryError The bodies and the time may have moved already.
+        The step counts (World.steps) when it is complete: the next call completes it as its first step, here or in a
+        world that has read a checkpoint written meanwhile. The bits are those of a run without the interruption.
         """
         self._ok(self._run(_lib.dem_world_step, self._c, steps) if self._context.kept or self._context.runs else
             _lib.dem_world_step(self._c, steps))
@@ -5727,16 +6369,16 @@ class World(WorldBase):
     def run(self, seconds, progress=None):
         """Advances the world by `seconds` of simulated time (>= 0), to the nearest step. Consecutive calls add up:
         twenty of 0.05 s end within half a step of 1 s, because each counts from where the previous one should have
-        ended (unless other steps were taken in between). progress: or null. Errors as for dem_world_step.
+        ended (unless other steps were taken in between). progress: a function, or None. Errors as for World.step.
         """
-        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress, 'World.run: progress')
         self._ok(self._run(_lib.dem_world_run, self._c, seconds, progress, None))
 
     def run_to(self, time, progress=None):
-        """Advances the world to a time of its clock, s, not before the present one. Otherwise as dem_world_run. A
-        program that has read a checkpoint can thus run to the same end.
+        """Advances the world to a time of its clock, s, not before the present one. Otherwise as World.run. A program
+        that has read a checkpoint can thus run to the same end.
         """
-        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress, 'World.run_to: progress')
         self._ok(self._run(_lib.dem_world_run_to, self._c, time, progress, None))
 
     def settle(self, seconds, speed=0, progress=None):
@@ -5745,17 +6387,17 @@ class World(WorldBase):
         than 10 times that. Spins do not count, because nothing brakes a sphere that spins on a point. Checks are at
         most sqrt(R/g) apart, the time of a fall by half the mean radius R (without gravity: the time in which `speed`
         covers R/2). All feeds, also those that begin later, must have inserted all their grains first. speed: m/s, >=
-        0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: or null. Errors as for dem_world_step; also
-        DEM_ERROR_ARGUMENT for a feed with neither `limited` nor `end`, and DEM_ERROR_STOPPED if the time is up: the
-        message gives the speeds, or the feed that is not done, and the state is intact.
+        0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: a function, or None. Errors as for World.step; also
+        ArgumentError for a feed with neither `limited` nor `end`, and StoppedError if the time is up: the message
+        gives the speeds, or the feed that is not done, and the state is intact.
         """
-        progress = self._callback(ProgressFn, _go_on if progress is None else progress)
+        progress = self._callback(ProgressFn, _go_on if progress is None else progress, 'World.settle: progress')
         self._ok(self._run(_lib.dem_world_settle, self._c, seconds, speed, progress, None))
 
     def gravity_set(self, gravity):
         """Sets gravity, m/s2 (components up to 1e15), from now on: for a mill seen from its shell, or a table that is
-        tilted. Any number of calls between two steps is allowed. A planar world ignores z. dem_world_desc_get returns
-        it, checkpoints store it, and slabs take it over when they are created.
+        tilted. Any number of calls between two steps is allowed. A planar world ignores z. World.desc returns it,
+        checkpoints store it, and slabs take it over when they are created.
         """
         self._ok(_lib.dem_world_gravity_set(self._c, gravity))
 
@@ -5766,11 +6408,11 @@ class World(WorldBase):
         user-defined functions, and their kinetic energy is that of these velocities. Contacts see the difference of
         the flow between both bodies, so no place of the cell differs from another [EVA08], and images across the y
         faces move with the shear [LEE72]. Along axes with a rate_most the rate is chosen before each step; its gain
-        follows from the contacts (>>stress). Further calls may change everything at any time; contact histories stay.
-        Axes that move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`.
-        Checkpoints store the cell. An error with DEM_RESPONSE_IMPULSES, in slabs, and together with walls, joints,
-        rails, feeds and outlets. Fields, fills and selections by region are an error while a cell is sheared. A step
-        that would strain the cell by more than 0.01 fails with DEM_ERROR_TIME_STEP.
+        follows from the contacts. Further calls may change everything at any time; contact histories stay. Axes that
+        move must be periodic; a shear needs x and y. The ledger counts the work of the cell as `cell`. Checkpoints
+        store the cell. An error with "impulses", in slabs, and together with walls, joints, rails, feeds and outlets.
+        Fields, fills and selections by region are an error while a cell is sheared. A step that would strain the cell
+        by more than 0.01 fails with TimeStepError.
 
         rate: 1/s, strain rate of each axis; positive: the cell becomes longer
         shear: 1/s, shear rate: change of the velocity along x with y
@@ -5778,12 +6420,15 @@ class World(WorldBase):
         rate_most: 1/s, >= 0: largest strain rate by which the cell is led to `stress` along this axis, whose `rate`
             must be 0; 0: the axis follows `rate`
         """
-        desc = CellDesc(rate=rate, shear=shear, stress=stress, rate_most=rate_most)
+        desc = CellDesc._of_call('World.cell_set', dict(rate=rate, shear=shear, stress=stress, rate_most=rate_most))
         self._ok(_lib.dem_cell_set(self._c, desc))
 
     @property
     def cell_state(self):
-        """Writes the state of the cell to state."""
+        """Returns the state of the cell.
+
+        Returns: CellState
+        """
         state = CellState()
         self._ok(_lib.dem_cell_state_get(self._c, state))
         self._with(state)
@@ -5791,8 +6436,8 @@ class World(WorldBase):
 
     def dt_set(self, dt):
         """Sets the time step, s (1e-20 to 1e15), from now on. 0: chosen from the scene, as with desc.dt; an error with
-        DEM_RESPONSE_IMPULSES. Contact history stays. Checkpoints store the step. If it is too large, the next
-        dem_world_step returns DEM_ERROR_TIME_STEP.
+        "impulses". Contact history stays. Checkpoints store the step. If it is too large, the next World.step raises
+        TimeStepError.
         """
         self._ok(_lib.dem_world_dt_set(self._c, dt))
 
@@ -5821,7 +6466,10 @@ class World(WorldBase):
 
     @property
     def counters(self):
-        """Returns the counters."""
+        """Returns the counters.
+
+        Returns: Counters
+        """
         found = _lib.dem_counters_get(self._c)
         self._ok(0)
         return self._with(found)
@@ -5833,22 +6481,26 @@ class World(WorldBase):
 
     @property
     def ledger(self):
-        """Returns the ledger."""
+        """Returns the ledger.
+
+        Returns: Ledger
+        """
         found = _lib.dem_ledger_get(self._c)
         self._ok(0)
         return self._with(found)
 
     @property
     def totals(self):
-        """Computes the totals in one pass over the bodies."""
+        """Computes the totals in one pass over the bodies.
+
+        Returns: Totals
+        """
         found = _lib.dem_totals_get(self._c)
         self._ok(0)
         return self._with(found)
 
     def observer_height(self):
-        """Returns the height of the centre of mass above the origin, m: against gravity, or along z if there is none.
-        user: not used, or null, as in the next three.
-        """
+        """Returns the height of the centre of mass above the origin, m: against gravity, or along z if there is none."""
         found = _lib.dem_observer_height(self._c, None)
         self._ok(0)
         return found
@@ -5879,8 +6531,8 @@ class World(WorldBase):
         another normal law; another friction law. Trials that do not fit the scene are left out. The best trial is the
         cheapest whose `promise` is within the tolerance; a change must save a tenth of the time. If none is, the best
         is the reference. User-defined functions (laws, fields, motions, regions of feeds) are called for the copies,
-        too, and may see the same simulated time again. Errors: no bodies; DEM_RESPONSE_IMPULSES; a budget too short
-        for 64 steps per run; a scene that does not run. A trial that does not reach its end is not an error.
+        too, and may see the same simulated time again. Errors: no bodies; "impulses"; a budget too short for 64 steps
+        per run; a scene that does not run. A trial that does not reach its end is not an error.
 
         duration: s, required, > 0: simulated by each run, at least 64 steps. Observables are averaged over its second
             half.
@@ -5889,64 +6541,61 @@ class World(WorldBase):
         tolerance: allowed deviation of an observable/its scale; 0 means 0.02
         seeds: 0 to 16, not 1: runs per trial, which start from positions that differ by at most 1e-6 of a radius; 0
             means 3
-        observable_count: observables to compare; 0 means three. These are height, scaled by its value above the
-            lowest grain; kinetic, scaled by the present energy plus that of a fall of all grains by their radius;
-            contacts.
-        progress: called with the original world after each trial; null means no call. A non-zero return value ends
-            dem_trials_run with DEM_ERROR_STOPPED.
-        user: passed to `progress`; or null
+        progress: called with the original world after each trial; None means no call. A non-zero return value ends
+            World.trials_run with StoppedError.
+        Returns: Trials
         """
         trials = Trials()
-        desc = TrialsDesc(duration=duration, budget=budget, tolerance=tolerance, seeds=seeds,
-            observable_count=observable_count, observables=observables, progress=progress, user=user)
+        desc = TrialsDesc._of_call('World.trials_run', dict(duration=duration, budget=budget, tolerance=tolerance,
+            seeds=seeds, observable_count=observable_count, observables=observables, progress=progress, user=user))
         desc = self._bound(desc)
         self._ok(self._run(_lib.dem_trials_run, self._c, desc, trials))
         return trials
 
     @property
     def contacts(self):
-        """Writes the contacts, those with walls included, at most `capacity` of them, and returns their number. `out` or
-        null. The contact history does not change. A contact of two polyhedra, or of one with a wall, is written as up
-        to four (dem_shape_polyhedron_add). Contacts of two spheres are those of the present state; all others, and
-        with impulses all, are as the last computation of forces has left them. With impulses these forces, gravity
-        and force fields together give the change of the velocities in the coming step. After bodies, walls or
-        materials have changed, call dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the
-        list. Returns -1 if there is no list: before the first step, and after bodies or walls have changed.
+        """Returns the contacts, those with walls included. The contact history does not change. A contact of two
+        polyhedra, or of one with a wall, is written as up to four (World.shape_polyhedron). Contacts of two spheres
+        are those of the present state; all others, and with impulses all, are as the last computation of forces has
+        left them. With impulses these forces, gravity and force fields together give the change of the velocities in
+        the coming step. After bodies, walls or materials have changed, call World.contacts_each first: it computes
+        them. World.candidates_rebuild makes only the list. It is an error if there is no list: before the first step,
+        and after bodies or walls have changed.
+
+        Returns: Structs of ContactInfo
         """
         capacity = self._number(_lib.dem_contacts_get(self._c, None, 0))
-        out = (ContactInfo*max(capacity, 1))()
+        out = _row(ContactInfo, max(capacity, 1))()
         count = self._number(_lib.dem_contacts_get(self._c, ctypes.cast(out, ctypes.POINTER(ContactInfo)), capacity))
-        array = (out._type_*count).from_buffer(out)
+        array = _row(out._type_, count).from_buffer(out)
         return Structs(array)
 
     def contacts_each(self, fn=None):
         """Calls `fn` for every contact, those with walls included, and returns their number. With a law that has a range
-        these are all pairs within the range. Computes forces first if the scene has changed, and returns -1 where a
-        step would fail. user: or null.
+        these are all pairs within the range. Computes forces first if the scene has changed.
         """
-        fn = self._callback(ContactFn, fn)
+        fn = self._callback(ContactFn, fn, 'World.contacts_each: fn')
         return self._number(_lib.dem_contacts_each(self._c, fn, None))
 
     def bonds_make(self, gap, make=None):
         """Calls `make` for every pair of bodies (no walls) with a gap below `gap`, and returns their number, so that
         `make` can write a bond into the contact history of a user-defined law. gap: m, >= 0, at most the range of the
-        law for the two smallest grains: law_range + law_range_radii times the sum of their radii. user: or null.
-        Errors as for dem_contacts_each.
+        law for the two smallest grains: law_range + law_range_radii times the sum of their radii. Errors as for
+        World.contacts_each.
         """
-        make = self._callback(ContactFn, make)
+        make = self._callback(ContactFn, make, 'World.bonds_make: make')
         return self._number(_lib.dem_bonds_make(self._c, gap, make, None))
 
     @property
     def candidates(self):
-        """Writes the candidate pairs of the neighbour list (capacity x 2: dem_body.slot of a and b), at most `capacity`
-        of them, and returns their number. `out` or null. Returns -1 if bodies or walls have changed since the last
-        step.
+        """Returns the candidate pairs of the neighbour list (count x 2: Body.slot of a and b). It is an error if bodies
+        or walls have changed since the last step.
         """
         capacity = self._number(_lib.dem_candidates_get(self._c, None, 0))
-        out = ((ctypes.c_uint32*2)*max(capacity, 1))()
+        out = _row(_row(ctypes.c_uint32, 2), max(capacity, 1))()
         count = self._number(_lib.dem_candidates_get(self._c, ctypes.cast(out, ctypes.POINTER(ctypes.c_uint32)),
             capacity))
-        array = (out._type_*count).from_buffer(out)
+        array = _row(out._type_, count).from_buffer(out)
         return array
 
     def candidates_rebuild(self):
@@ -5957,15 +6606,14 @@ class World(WorldBase):
         """Starts to record contacts; needs desc.ledger. If they are recorded already, replaces the function and keeps
         the records. Forces and motions have the same bits as without a recording. Checkpoints contain the records,
         but not the function: call this again after reading one in a new program. Slabs continue the recording of the
-        world from which they are created, if one process holds them all; dem_slabs_collect returns it. A step that
-        has no memory for the records completes, stops the recording and fails with DEM_ERROR_MEMORY.
+        world from which they are created, if one process holds them all; Slabs.collect returns it. A step that has no
+        memory for the records completes, stops the recording and fails with MemoryError.
 
-        function: called after each step for the contacts that have ended in it; null means no call. The contacts are
+        function: called after each step for the contacts that have ended in it; None means no call. The contacts are
             in the order of their ids, for any number of threads and slabs.
-        user: passed to `function`; or null
         begins: 1: also called for contacts that have begun, before those
         """
-        desc = EventsDesc(function=function, user=user, begins=begins)
+        desc = EventsDesc._of_call('World.events_record', dict(function=function, user=user, begins=begins))
         desc = self._bound(desc)
         self._ok(_lib.dem_events_record(self._c, desc))
 
@@ -5974,15 +6622,17 @@ class World(WorldBase):
         self._ok(_lib.dem_events_stop(self._c))
 
     def events_open_each(self, fn=None):
-        """Calls `fn` for every contact that exists, in the order of ids, and returns their number. fn and user: or null.
-        Returns -1 if contacts are not recorded.
+        """Calls `fn` for every contact that exists, in the order of ids, and returns their number. It is an error if
+        contacts are not recorded.
         """
-        fn = self._callback(EventFn, fn)
+        fn = self._callback(EventFn, fn, 'World.events_open_each: fn')
         return self._number(_lib.dem_events_open_each(self._c, fn, None))
 
     def impacts(self, a=None, b=None):
-        """Computes the statistics of contacts between two materials, walls included; material id 0 means any. An error
+        """Computes the statistics of contacts between two materials, walls included; material None means any. An error
         if contacts are not recorded.
+
+        Returns: Impacts
         """
         impacts = Impacts()
         self._ok(_lib.dem_impacts_get(self._c, a, b, impacts))
@@ -5999,7 +6649,9 @@ class World(WorldBase):
     def stress(self):
         """Computes stress and fabric of the present state in one pass over bodies and contacts. The domain must have an
         extent along all axes (planar: along x and y; its depth is desc.thickness). An error if bodies or walls have
-        changed since the last step; then call dem_contacts_each first (see dem_contacts_get).
+        changed since the last step; then call World.contacts_each first (see World.contacts).
+
+        Returns: Stress
         """
         stress = Stress()
         self._ok(_lib.dem_stress_get(self._c, stress))
@@ -6015,19 +6667,20 @@ class World(WorldBase):
         cells: required, >= 1: along each axis, at most 2^28 in all
         start: s, window of time; end 0 means no end
         interval: s, from start on; 0 means every 100 steps of the present dt
-        material: only grains of this material; id 0 means all grains
+        material: only grains of this material; None means all grains
         radius_min: m, only of these (bounding) radii; max 0 means any
         stress: 1: also flux, stress and contacts; visits every contact
         width: m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach c = 2 width
             [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of the first factor),
             evaluated at the centres of cells. Keep cells no longer than width.
-        group: only members of this group; id 0 means all grains
+        group: only members of this group; None means all grains
         variance: 1: also variances of cells over the samples; not in slabs
-        bodies: 1: also averages each grain (dem_body_means); one field may
+        bodies: 1: also averages each grain (BodyMeans); one field may
+        Returns: Field
         """
-        desc = FieldDesc(box=box, cells=cells, start=start, end=end, interval=interval, material=material,
-            radius_min=radius_min, radius_max=radius_max, stress=stress, width=width, group=group, variance=variance,
-            bodies=bodies)
+        desc = FieldDesc._of_call('World.field', dict(box=box, cells=cells, start=start, end=end, interval=interval,
+            material=material, radius_min=radius_min, radius_max=radius_max, stress=stress, width=width, group=group,
+            variance=variance, bodies=bodies))
         desc = self._bound(desc)
         return self._id(_lib.dem_field_add(self._c, desc))
 
@@ -6038,11 +6691,13 @@ class World(WorldBase):
         box: m, required: what the cells divide
         cells: required, >= 1: along each axis; 10 to 30 grains per cell suit
         material: the component: a material (id 0: any), and (bounding) radii, m (max 0: any); not both open
-        centre: m, a point on an axis; its direction, of any length, 0: no axis
+        centre: m, a point on an axis
+        axis: its direction, of any length, 0: no axis
+        Returns: Mixing
         """
         mixing = Mixing()
-        desc = MixingDesc(box=box, cells=cells, material=material, radius_min=radius_min, radius_max=radius_max,
-            centre=centre, axis=axis)
+        desc = MixingDesc._of_call('World.mixing', dict(box=box, cells=cells, material=material,
+            radius_min=radius_min, radius_max=radius_max, centre=centre, axis=axis))
         desc = self._bound(desc)
         self._ok(_lib.dem_mixing_get(self._c, desc, mixing))
         self._with(mixing)
@@ -6055,6 +6710,8 @@ class World(WorldBase):
         distance from the vertical through the centre of mass. The line is fitted from 20 to 80 % of its height,
         without the rounded top and the toe; in a planar world to the mean of both flanks. An error without gravity or
         with fewer than four points.
+
+        Returns: Repose
         """
         repose = Repose()
         self._ok(_lib.dem_repose_heap_get(self._c, box, repose))
@@ -6066,6 +6723,8 @@ class World(WorldBase):
         horizontal): positive if the surface rises in the direction in which the bottom of the drum moves. The line is
         fitted to the middle half of the surface. It suits charges that roll or cascade; grains in flight belong to no
         surface. `box` and errors as above.
+
+        Returns: Repose
         """
         repose = Repose()
         self._ok(_lib.dem_repose_drum_get(self._c, box, axis, repose))
@@ -6073,11 +6732,12 @@ class World(WorldBase):
         return repose
 
     def mesh_read(self, path):
-        """Reads the triangles of a file and, if `health` is not null, counts its defects. The contents identify the
-        format: STL (text or binary), OBJ, or the text format of [MIL] (counts, vertices, corners counted from 1). OBJ
-        faces of more than three corners become triangles that cover them once and keep their winding; a face that is
-        not convex may have 10,000 corners. Error messages name file, line and reason. Free the mesh with
-        dem_mesh_free.
+        """Reads the triangles of a file and counts its defects. The contents identify the format: STL (text or binary),
+        OBJ, or the text format of [MIL] (counts, vertices, corners counted from 1). OBJ faces of more than three
+        corners become triangles that cover them once and keep their winding; a face that is not convex may have
+        10,000 corners. Error messages name file, line and reason.
+
+        Returns: Mesh, MeshHealth
         """
         mesh = Mesh()
         health = MeshHealth()
@@ -6087,7 +6747,10 @@ class World(WorldBase):
         return mesh, health
 
     def mesh_parse(self, name, data):
-        """Reads triangles from memory, `size` bytes at `data`, as dem_mesh_read does. name: for error messages; or null."""
+        """Reads triangles from memory (`data`), as World.mesh_read does. name: for error messages.
+
+        Returns: Mesh, MeshHealth
+        """
         data = _data_of(data, 'World.mesh_parse: data')
         mesh = Mesh()
         health = MeshHealth()
@@ -6101,7 +6764,9 @@ class World(WorldBase):
         """Reads one named part of a file, such as the shell, the ends or the lifters of a drum. In an STL text file this
         is the solid of that name (the whole rest of its line). In an OBJ file these are the faces whose object (`o
         NAME`) or one of whose groups (`g NAME NAME`) has that name; a `g` line replaces the groups before it and
-        leaves the object. If the file has no such part, the error message lists its parts. health: or null.
+        leaves the object. If the file has no such part, the error message lists its parts.
+
+        Returns: Mesh, MeshHealth
         """
         mesh = Mesh()
         health = MeshHealth()
@@ -6119,18 +6784,20 @@ class World(WorldBase):
         self._ok(_lib.dem_mesh_place(self._c, _struct_of(Mesh, mesh, 'World.mesh_place: mesh'), scale, rotation, to))
 
     def mesh_spheres(self, mesh, count):
-        """Approximates a closed mesh by `count` spheres (1 to 1000), for a cluster: writes positions (count x 3) and
-        radii (count), in m, in the frame of the mesh. On a grid with 40 points along the longest side, each sphere is
-        placed where it leaves the fewest points wrong; then all are placed again, one at a time, while that helps.
-        fit: or null. A cluster of few spheres has the mass and moments of the body if it gets volume, centre and
-        inertia of `fit` (DEM_CLUSTER_GIVEN). Inconsistent winding, a mesh that is inside out, and duplicate triangles
-        do no harm. A shell inside another that faces the other way is a cavity. Errors: an open mesh, edges whose
-        triangles do not pair, a surface with one side only, shells that cross or that face the same way as the shell
-        around them, a mesh too thin for any sphere.
+        """Approximates a closed mesh by `count` spheres (1 to 1000), for a cluster: returns positions (count x 3) and
+        radii, m, in the frame of the mesh. On a grid with 40 points along the longest side, each sphere is placed
+        where it leaves the fewest points wrong; then all are placed again, one at a time, while that helps. A cluster
+        of few spheres has the mass and moments of the body if it gets volume, centre and inertia of `fit` ("given").
+        Inconsistent winding, a mesh that is inside out, and duplicate triangles do no harm. A shell inside another
+        that faces the other way is a cavity. Errors: an open mesh, edges whose triangles do not pair, a surface with
+        one side only, shells that cross or that face the same way as the shell around them, a mesh too thin for any
+        sphere.
+
+        Returns: Row, Row, SpheresFit
         """
         mesh = self._bound(_struct_of(Mesh, mesh, 'World.mesh_spheres: mesh'))
-        positions = ((Real*3)*_size_of(count, 'World.mesh_spheres: count'))()
-        radii = (Real*_size_of(count, 'World.mesh_spheres: count'))()
+        positions = _row(_row(Real, 3), _size_of(count, 'World.mesh_spheres: count'))()
+        radii = _row(Real, _size_of(count, 'World.mesh_spheres: count'))()
         fit = SpheresFit()
         self._ok(_lib.dem_mesh_spheres(self._c, mesh, count, ctypes.cast(positions, ctypes.POINTER(Real)),
             ctypes.cast(radii, ctypes.POINTER(Real)), fit))
@@ -6139,12 +6806,13 @@ class World(WorldBase):
 
     def wall_parts(self, path, scale, parts):
         """Adds a machine from CAD: `count` (>= 1) named parts of a file (STL text, OBJ), each as a wall with its own
-        material and motion. scale: m per unit of length of the file, > 0; 0: 1. walls: receives `count` ids; or null.
-        If one part fails, no wall is added.
+        material and motion. scale: m per unit of length of the file, > 0; 0: 1. If one part fails, no wall is added.
+
+        Returns: a list of Wall
         """
         parts = _array_of(_parts_of(parts, self, 'World.wall_parts: parts'), WallPart, 'World.wall_parts: parts', 1)
         count = len(parts)
-        walls = (Wall*max(count, 1))()
+        walls = _row(Wall, max(count, 1))()
         self._ok(_lib.dem_wall_parts_add(self._c, _text_of(path, 'World.wall_parts: path'), scale, count, parts,
             ctypes.cast(walls, ctypes.POINTER(Wall))))
         walls = [item.of(self) for item in walls]
@@ -6152,7 +6820,9 @@ class World(WorldBase):
 
     def profile_read(self, path):
         """Reads the segments of a profile in the text format of [MIL] in 2-D: the counts of vertices and segments, x y
-        per vertex, two corners counted from 1 per segment. Free with dem_profile_free.
+        per vertex, two corners counted from 1 per segment.
+
+        Returns: Profile
         """
         profile = Profile()
         self._ok(_lib.dem_profile_read(self._c, _text_of(path, 'World.profile_read: path'), profile))
@@ -6160,7 +6830,10 @@ class World(WorldBase):
         return profile
 
     def profile_parse(self, name, data):
-        """Reads the segments of a profile from memory, `size` bytes at `data`. name: for error messages; or null."""
+        """Reads the segments of a profile from memory (`data`). name: for error messages.
+
+        Returns: Profile
+        """
         data = _data_of(data, 'World.profile_parse: data')
         profile = Profile()
         self._ok(_lib.dem_profile_parse(self._c, _text_of(name, 'World.profile_parse: name'), data, len(data),
@@ -6173,15 +6846,17 @@ class World(WorldBase):
         grain. Columns are separated by semicolons, tabs, commas or blanks, as in the first line. A decimal comma is
         allowed between semicolons or tabs. Cells may be quoted; # begins a comment. The first line, or a comment
         before it, names the columns; without names they are x y z r, or x y z r vx vy vz. An empty cell in a column
-        that is used is an error. - extended XYZ with Properties (OVITO, ASE, dem_xyz_write), and dumps of LAMMPS and
-        LIGGGHTS: the first frame. Pass the lines of another frame to dem_grains_parse. - legacy VTK, VTP and VTU
-        (ParaView, LIGGGHTS, dem_vtp_write) as ASCII, base64 or raw bytes; a compressed file is an error. Names, in
-        upper or lower case: position x y z, or position, pos, points size r or radius, d or diameter velocity vx vy
-        vz, or v, vel, velo, velocity angular velocity wx wy wz, or omega, spin, angular_velocity material material;
-        otherwise type, if it is a number A component may follow a name, as in velocity:0, omegax, Position.X, and
-        then a unit: (m), (mm), (cm), (um), (mm/s), (rad/s). `ignored` lists other columns, and the second of two that
-        mean the same. Each sphere of a file of clusters becomes one grain. Error messages name file, line and reason.
-        Free with dem_grains_free.
+        that is used is an error. - extended XYZ with Properties (OVITO, ASE, World.xyz_write), and dumps of LAMMPS
+        and LIGGGHTS: the first frame. Pass the lines of another frame to World.grains_parse. - legacy VTK, VTP and
+        VTU (ParaView, LIGGGHTS, World.vtp_write) as ASCII, base64 or raw bytes; a compressed file is an error. Names,
+        in upper or lower case: position x y z, or position, pos, points size r or radius, d or diameter velocity vx
+        vy vz, or v, vel, velo, velocity angular velocity wx wy wz, or omega, spin, angular_velocity material
+        material; otherwise type, if it is a number A component may follow a name, as in velocity:0, omegax,
+        Position.X, and then a unit: (m), (mm), (cm), (um), (mm/s), (rad/s). `ignored` lists other columns, and the
+        second of two that mean the same. Each sphere of a file of clusters becomes one grain. Error messages name
+        file, line and reason.
+
+        Returns: Grains
         """
         grains = Grains()
         self._ok(_lib.dem_grains_read(self._c, _text_of(path, 'World.grains_read: path'), grains))
@@ -6189,7 +6864,10 @@ class World(WorldBase):
         return grains
 
     def grains_parse(self, name, data):
-        """Reads grains from memory, `size` bytes at `data`, as dem_grains_read does. name: for error messages; or null."""
+        """Reads grains from memory (`data`), as World.grains_read does. name: for error messages.
+
+        Returns: Grains
+        """
         data = _data_of(data, 'World.grains_parse: data')
         grains = Grains()
         self._ok(_lib.dem_grains_parse(self._c, _text_of(name, 'World.grains_parse: name'), data, len(data), grains))
@@ -6233,8 +6911,8 @@ class World(WorldBase):
     def walls_vtp_write(self, path, z0, z1):
         """Writes the triangles of all meshes, profiles and surfaces of revolution in their present pose (VTP), with the
         id of the wall. Profiles are extruded from z0 to z1 (m, z0 < z1). While contacts are recorded
-        (dem_events_record), the column `sliding` has the work of sliding on the facet or segment of each triangle, J,
-        as returned by dem_wall_wear_facets_get. It is 0 on surfaces of revolution.
+        (World.events_record), the column `sliding` has the work of sliding on the facet or segment of each triangle,
+        J, as returned by Wall.wear_facets. It is 0 on surfaces of revolution.
         """
         self._ok(_lib.dem_walls_vtp_write(self._c, _text_of(path, 'World.walls_vtp_write: path'), z0, z1))
 
@@ -6246,8 +6924,8 @@ class World(WorldBase):
 
     def bodies_csv_write(self, path):
         """Writes the bodies: id, number of the material, (bounding) radius, position, velocity, spin and body_reals. If
-        a field averages bodies (dem_field_desc.bodies), also the samples, and mean and variance of velocity, spin and
-        force. dem_grains_read reads such a table.
+        a field averages bodies (FieldDesc.bodies), also the samples, and mean and variance of velocity, spin and
+        force. World.grains_read reads such a table.
         """
         self._ok(_lib.dem_bodies_csv_write(self._c, _text_of(path, 'World.bodies_csv_write: path')))
 
@@ -6259,25 +6937,24 @@ class World(WorldBase):
 
     def replay(self, path, *, title=None, number=None, number_fn=None, user=None, resolution=0, interval=0,
             contacts=0):
-        """Opens a replay of the world. desc: or null, for DEM_REPLAY_DESC. Close the replay before its world is
-        destroyed.
+        """Opens a replay of the world. Close the replay before its world is destroyed.
 
-        title: copied; null means the name of the file
+        title: copied; None means the name of the file
         number: Name of the numbers by which grains can be coloured: one in desc.body_reals, a group in desc.groups
-            (1: member, 0: not), or one for the values of number_fn. Null means the first name, or "number". Copied,
+            (1: member, 0: not), or one for the values of number_fn. None means the first name, or "number". Copied,
             at most 63 characters.
-        number_fn: returns the number of a body, for every frame; null means one of desc.body_reals
-        user: passed to number_fn; or null
+        number_fn: returns the number of a body, for every frame; None means one of desc.body_reals
         resolution: m, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame
         interval: s, >= 0: a run writes frames automatically, the first when it begins and then at the steps nearest
-            to multiples of the interval. A frame that cannot be written ends the replay, not the run:
-            dem_replay_close returns the error. 0 means frames only from dem_replay_frame_write.
+            to multiples of the interval. A frame that cannot be written ends the replay, not the run: Replay.close
+            returns the error. 0 means frames only from Replay.frame_write.
         contacts: >= 0: n records the contact forces in every n-th frame. The viewer draws them as lines between
             centres, or from a centre to the contact point with a wall, wider and redder for larger forces. A frame
             has at most the 50,000 largest, and none below 1 % of its largest. 0 means none.
+        Returns: Replay
         """
-        desc = ReplayDesc(title=title, number=number, number_fn=number_fn, user=user, resolution=resolution,
-            interval=interval, contacts=contacts)
+        desc = ReplayDesc._of_call('World.replay', dict(title=title, number=number, number_fn=number_fn, user=user,
+            resolution=resolution, interval=interval, contacts=contacts))
         desc = self._bound(desc)
         return Replay(self._pointer(_lib.dem_replay_open(self._c, _text_of(path, 'World.replay: path'), desc)), self,
             path)
@@ -6301,21 +6978,21 @@ class World(WorldBase):
 
     def checkpoint_read_changed(self, path, allowed):
         """The same for a world that differs from the one that wrote the file. allowed: words, each the name of a field
-        of dem_world_desc, such as "dt ledger orientations tangent_law", or "materials" (all but density, and the
-        pairs that are mixtures of them) or "pairs" (also those of dem_pair_set); "" allows nothing. Fields named
-        there keep the values of this world. Everything else must agree; domain, boundary, planar, thickness,
-        response, body_reals, law_memory_names, groups, shapes, walls, fields, feeds and outlets always. Contact
-        histories are converted where a law is the same, and begin at 0 if a law is user-defined and `law`,
-        `law_memory` or the like differs. If the file has no ledger, the ledger begins with the present kinetic energy
-        as `inserted` and the present elastic energy as `growth`. Otherwise `growth` receives the energy that springs
-        hold more than in the file.
+        of WorldDesc, such as "dt ledger orientations tangent_law", or "materials" (all but density, and the pairs
+        that are mixtures of them) or "pairs" (also those of World.pair_set); "" allows nothing. Fields named there
+        keep the values of this world. Everything else must agree; domain, boundary, planar, thickness, response,
+        body_reals, law_memory_names, groups, shapes, walls, fields, feeds and outlets always. Contact histories are
+        converted where a law is the same, and begin at 0 if a law is user-defined and `law`, `law_memory` or the like
+        differs. If the file has no ledger, the ledger begins with the present kinetic energy as `inserted` and the
+        present elastic energy as `growth`. Otherwise `growth` receives the energy that springs hold more than in the
+        file.
         """
         self._ok(_lib.dem_checkpoint_read_changed(self._c, _text_of(path, 'World.checkpoint_read_changed: path'),
             _text_of(allowed, 'World.checkpoint_read_changed: allowed')))
 
     @property
     def checkpoint_changes(self):
-        """Returns what differed in the last checkpoint that dem_checkpoint_read_changed has read, such as "dt: 1e-05
+        """Returns what differed in the last checkpoint that World.checkpoint_read_changed has read, such as "dt: 1e-05
         there, 2e-05 here", or "".
         """
         return (_lib.dem_checkpoint_changes_get(self._c) or b'').decode()
@@ -6329,39 +7006,41 @@ class World(WorldBase):
         what each output has written. A world that reads it continues from there, with nothing missing and nothing
         twice, and removes later lines of a CSV file before it appends the next. Outputs are matched by kind and path,
         so add them before reading the checkpoint. Other outputs may be added, and times may differ. A function
-        (DEM_OUTPUT_CALL) may add outputs, and write and read checkpoints; a checkpoint that it writes counts the
-        present call as done.
+        ("call") may add outputs, and write and read checkpoints; a checkpoint that it writes counts the present call
+        as done.
 
         kind: one of "call", "vtp", "xyz", "contacts", "checkpoint", "csv", "surfaces", "walls", "bodies_csv",
             "contacts_csv", "field_csv"
         path: Name of the file, copied. In "grains_####.vtp" the number of the output replaces ####; it is 0 at
-            `start`. Without # the file is replaced each time. The path of a CSV file has no #. DEM_OUTPUT_CALL: or
-            null.
+            `start`. Without # the file is replaced each time. The path of a CSV file has no #. "call": or None.
         interval: s, required, 1e-12 to 1e15
         start: s, times of the first and the last; end 0 means no last
-        wall: CSV: what a line contains. One of five: the loads of this wall, as dem_wall_loads_csv_write; the counts
-            of an outlet; the mixing of two components, if mixing.cells are set; the values that `values` writes, with
+        wall: CSV: what a line contains. One of five: the loads of this wall, as Wall.loads_csv_write; the counts of
+            an outlet; the mixing of two components, if mixing.cells are set; the values that `values` writes, with
             `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of these is set, steps,
             bodies, contacts, kinetic and rotational energy (J) and overlap_max
         function: CALL: may change the world, but not step it. A return value other than 0 stops the run
-            (DEM_ERROR_STOPPED).
-        user: passed to `values` and `function`; or null
+            (StoppedError).
         mixing: CSV: see above
         field: FIELD_CSV: required
-        z0: m, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with dem_output_every_add:
+        z0: m, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with World.output_every:
             over desc.thickness (planar), over desc.domain along z if it has an extent, or else from the lowest to the
             highest body
         outlet: CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as in
-            dem_outlet_state
+            OutletState
+        Returns: Output
         """
-        desc = OutputDesc(kind=kind, path=path, interval=interval, start=start, end=end, wall=wall, columns=columns,
-            values=values, function=function, user=user, mixing=mixing, field=field, z0=z0, z1=z1, outlet=outlet)
+        desc = OutputDesc._of_call('World.output', dict(kind=kind, path=path, interval=interval, start=start, end=end,
+            wall=wall, columns=columns, values=values, function=function, user=user, mixing=mixing, field=field,
+            z0=z0, z1=z1, outlet=outlet))
         desc = self._bound(desc)
         return self._id(_lib.dem_output_add(self._c, desc))
 
     def output_every(self, kind, path, interval):
-        """Adds an output by kind, path and interval (s) alone: dem_output_every_add(world, DEM_OUTPUT_VTP,
-        "grains_####.vtp", 0.01).
+        """Adds an output by kind, path and interval (s) alone: World.output_every(world, "vtp", "grains_####.vtp",
+        0.01).
+
+        Returns: Output
         """
         return self._id(_lib.dem_output_every_add(self._c, _enum_of(kind, OutputKind, 'World.output_every: kind'),
             _text_of(path, 'World.output_every: path'), interval))
@@ -6369,9 +7048,9 @@ class World(WorldBase):
     def slabs(self, *, axis=0, count=0, first=0, local=0, transport=None, balance=0, balance_interval=0):
         """Creates slabs from a world: copies its grains to them, with everything a step needs. The world stays as it is,
         and may be destroyed. Every process builds the same world and passes its own `first` and `local`. Feeds and
-        outlets continue in the slabs. Errors, which dem_world_error_get(world) returns: impulses, bodies on rails, a
-        deformed cell, a field with variance; a recording of contacts if several processes hold the slabs; processes
-        that have built different scenes.
+        outlets continue in the slabs. Errors, which World.error(world) returns: impulses, bodies on rails, a deformed
+        cell, a field with variance; a recording of contacts if several processes hold the slabs; processes that have
+        built different scenes.
 
         axis: 0, 1, 2: borders are planes x, y, z = const
         count: required, 1 to 1024: number of slabs in all processes; only runs with the same number have the same
@@ -6381,24 +7060,26 @@ class World(WorldBase):
         balance: borders move if the work of the busiest slab exceeds this many times the mean, >= 1; 0 means 1.1.
             Below 0 borders do not move.
         balance_interval: rebuilds between two checks of the balance; 0 means 8
+        Returns: Slabs
         """
-        desc = SlabsDesc(axis=axis, count=count, first=first, local=local, transport=transport, balance=balance,
-            balance_interval=balance_interval)
+        desc = SlabsDesc._of_call('World.slabs', dict(axis=axis, count=count, first=first, local=local,
+            transport=transport, balance=balance, balance_interval=balance_interval))
         return Slabs(self._pointer(_lib.dem_slabs_create(self._c, desc)), self)
 
     def effects(self, budget=0):
-        """Writes for every effect whether it is off, idle or active, and returns their number. It finds a material with
-        rolling friction on which nothing has rolled, or a wall that nothing has touched. It can miss contacts of
-        spheres that begin and end between two neighbour lists. If `budget` (s of wall time, >= 0) is not 0, it also
-        measures what each effect costs: two copies of the world, one without the effect, take steps in turn.
-        User-defined laws (by pointer) and fields are called twice instead of being left out, and friction is left out
-        together with rolling friction. Shares need not add up to 1; on a busy machine they are noise. User-defined
-        functions are called for the copies, too. The world does not change. Returns -1 also if the scene would not
-        run.
+        """Returns for every effect whether it is off, idle or active. It finds a material with rolling friction on which
+        nothing has rolled, or a wall that nothing has touched. It can miss contacts of spheres that begin and end
+        between two neighbour lists. If `budget` (s of wall time, >= 0) is not 0, it also measures what each effect
+        costs: two copies of the world, one without the effect, take steps in turn. User-defined laws (by pointer) and
+        fields are called twice instead of being left out, and friction is left out together with rolling friction.
+        Shares need not add up to 1; on a busy machine they are noise. User-defined functions are called for the
+        copies, too. The world does not change. It is an error if the scene would not run.
+
+        Returns: a list of Effect
         """
-        effects = (Effect*max(EFFECTS, 1))()
+        effects = _row(Effect, max(EFFECTS, 1))()
         count = self._number(_lib.dem_effects_get(self._c, budget, ctypes.cast(effects, ctypes.POINTER(Effect))))
-        return list(effects[:min(count, len(effects))])
+        return list(_fixed(effects)[:min(count, len(effects))])
 
     def effects_print(self, budget=0, out=None):
         """Prints the effects as lines of text. A share outside -0.1 to 1, or with an error above 0.1, is printed as "too
@@ -6434,8 +7115,8 @@ class Slabs(SlabsBase):
     """The slabs that one process holds."""
 
     def step(self, steps):
-        """Advances all slabs by `steps` time steps (>= 0). Errors as for dem_world_step; DEM_ERROR_STOPPED also if the
-        transport has failed.
+        """Advances all slabs by `steps` time steps (>= 0). Errors as for World.step; StoppedError also if the transport
+        has failed.
         """
         self._ok(self._run(_lib.dem_slabs_step, self._c, steps) if self._context.kept or self._context.runs else
             _lib.dem_slabs_step(self._c, steps))
@@ -6444,7 +7125,7 @@ class Slabs(SlabsBase):
         """Copies the state of all slabs into a world of the same scene, in every process: grains, contact history,
         walls, loads, fields, feeds, outlets, ledger, time. The world can then be measured, written, stepped, or
         divided into slabs again, without effect on these slabs. It has no neighbour list until
-        dem_candidates_rebuild; after that it continues as the slabs would.
+        World.candidates_rebuild; after that it continues as the slabs would.
         """
         self._ok(_lib.dem_slabs_collect(self._c, _handle_of(world, World, 'Slabs.collect: world')))
 
@@ -6459,7 +7140,10 @@ class Slabs(SlabsBase):
         return (_lib.dem_slabs_error_get(self._c) or b'').decode()
 
     def slab(self, index):
-        """Describes one slab of this process; index: first to first + local - 1."""
+        """Describes one slab of this process; index: first to first + local - 1.
+
+        Returns: Slab
+        """
         slab = Slab()
         self._ok(_lib.dem_slab_get(self._c, index, slab))
         self._with(slab)
@@ -6467,29 +7151,44 @@ class Slabs(SlabsBase):
 
     @property
     def counters(self):
-        """Returns the counters of slabs."""
+        """Returns the counters of slabs.
+
+        Returns: SlabsCounters
+        """
         found = _lib.dem_slabs_counters_get(self._c)
         self._ok(0)
         return self._with(found)
 
 
 def quat_about(axis, angle):
-    """The right-handed rotation by `angle` (rad) about `axis` (any length except 0)."""
+    """The right-handed rotation by `angle` (rad) about `axis` (any length except 0).
+
+    Returns: Quat
+    """
     return _lib.dem_quat_about(axis, angle)
 
 
 def quat_multiply(a, b):
-    """The product a b: the rotation b followed by the rotation a."""
+    """The product a b: the rotation b followed by the rotation a.
+
+    Returns: Quat
+    """
     return _lib.dempy_quat_multiply(a, b)
 
 
 def quat_rotate(q, v):
-    """Rotates v from the frame of a body into the world frame. q must have unit length."""
+    """Rotates v from the frame of a body into the world frame. q must have unit length.
+
+    Returns: Vec3
+    """
     return _lib.dempy_quat_rotate(q, v)
 
 
 def quat_unrotate(q, v):
-    """Rotates v from the world frame into the frame of a body. q must have unit length."""
+    """Rotates v from the world frame into the frame of a body. q must have unit length.
+
+    Returns: Vec3
+    """
     return _lib.dempy_quat_unrotate(q, v)
 
 
@@ -6499,15 +7198,17 @@ def memory_rotate(c, v):
     with a tangential spring call it first. Accuracy: the rotation of the normal is exact to sixth order in its angle.
     The rotation t about the normal is limited to 1 rad per step; it shortens v by a fraction of t^4/64 and never
     lengthens it: (1 - u/2)^2 + u (1 - 9 u/64)^2 <= 1 with u = t^2 <= 1.
+
+    Returns: Vec3
     """
     return _lib.dempy_memory_rotate(c, v)
 
 
 def law_load(c, f, hold):
     """Computes the load for friction and removes a dashpot's attraction. A normal law calls it after it has set
-    f->elastic and f->normal. Without tension (CLIPPED, COMPENSATED) f->normal is raised to 0, or to the elastic force
-    if that attracts. The load is that of c->friction_load, at least 0; without tension it is always the whole normal
-    force. hold: N, >= 0, adhesion that adds to the load (not with DEM_LOAD_MAGNITUDE); 0: none.
+    f.elastic and f.normal. Without tension (CLIPPED, COMPENSATED) f.normal is raised to 0, or to the elastic force if
+    that attracts. The load is that of c.friction_load, at least 0; without tension it is always the whole normal
+    force. hold: N, >= 0, adhesion that adds to the load (not with "magnitude"); 0: none.
     """
     return _lib.dempy_law_load(c, f, hold)
 
@@ -6535,8 +7236,8 @@ def law_hysteretic(c, memory, f):
     is F + kad d, which is 0 on the adhesion line. [ALK07] takes |F|, which is 0 where F is 0 and large where the two
     are pulled apart. Energy: the contact stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed
     exactly along both lines. Motion along the slope kun loses nothing, so that a grain at rest oscillates there
-    unless the pair has normal_damping (cn). kun must be > 0. Without DEM_NORMAL_HYSTERETIC a user-defined law sets it
-    in a copy of *c. Contact history: 1 real, D [m].
+    unless the pair has normal_damping (cn). kun must be > 0. Without "hysteretic" a user-defined law sets it in a
+    copy of *c. Contact history: 1 real, D [m].
     """
     return _lib.dempy_law_hysteretic(c, memory, f)
 
@@ -6572,9 +7273,9 @@ def law_mindlin(c, memory, f):
 
 
 def law_mindlin_rescaled(c, memory, f):
-    """Mindlin's friction, rescaled on unloading [THO13]: as dem_law_mindlin, but while kt falls the force s is
+    """Mindlin's friction, rescaled on unloading [THO13]: as dem.law_mindlin, but while kt falls the force s is
     multiplied by kt/(kt of the last step), so that the displacement s/kt is kept. A change of the load of a sheared
-    contact then creates no energy. Contact history as for dem_law_mindlin.
+    contact then creates no energy. Contact history as for dem.law_mindlin.
     """
     return _lib.dempy_law_mindlin_rescaled(c, memory, f)
 
@@ -6609,7 +7310,7 @@ def law_roll_epsd(c, memory, f):
 def law_twist(c, memory, f):
     """Twisting (spinning) friction: a moment about the normal of at most mu_spin R* F against the relative spin about
     the normal, and at rest any moment up to that, as with impulses. A spring acts in parallel with a dashpot behind
-    the limit. As in dem_law_roll_constant it is as stiff as a step can resolve, k = (0.3/dt)^2 I with I = 2/5 m*
+    the limit. As in dem.law_roll_constant it is as stiff as a step can resolve, k = (0.3/dt)^2 I with I = 2/5 m*
     R*^2, and critically damped. So it holds a grain at rest and does not limit the time step. It adds to the moment
     of a rolling law. Contact history: 1 real, the moment of the spring [N m]; it does not change its sign if a and b
     are exchanged.
@@ -6623,7 +7324,10 @@ def result_name(result):
 
 
 def ellipsoids_contact(a, b, lambda_=0):
-    """Returns the contact of two ellipsoids. lambda is an initial guess, or 0."""
+    """Returns the contact of two ellipsoids. lambda is an initial guess, or 0.
+
+    Returns: EllipsoidContact
+    """
     a = _struct_of(Ellipsoid, a, 'dem.ellipsoids_contact: a')
     b = _struct_of(Ellipsoid, b, 'dem.ellipsoids_contact: b')
     return _lib.dem_ellipsoids_contact_get(a, b, lambda_)
@@ -6973,3 +7677,19 @@ _FUNCTIONS = [
 
 for _name in [name for name in Bodies.kinds if name not in ("count", "real_count")]:
     setattr(Rows, _name, _row_property(_name, next(doc for name, _, doc in Bodies.rows if name == _name)))
+_PARTS = {      # structs that properties return
+    'Material': {'desc': MaterialDesc},
+    'Wall': {'surface_velocity': Vec3, 'pose': Pose, 'loads': WallLoads, 'servo': Servo},
+    'Field': {'data': FieldData},
+    'Shape': {'info': ShapeInfo},
+    'Body': {'state': BodyState, 'reaction': RailState, 'means': BodyMeans},
+    'Joint': {'state': JointState},
+    'Feed': {'state': FeedState},
+    'Outlet': {'state': OutletState},
+    'World': {'desc': WorldDesc, 'bodies_memory': Bodies, 'body_counts': BodyCounts, 'step_advice': Advice,
+        'cell_state': CellState, 'counters': Counters, 'ledger': Ledger, 'totals': Totals, 'stress': Stress},
+    'Slabs': {'counters': SlabsCounters},
+}
+_bind_all(globals())
+__all__ = [_name for _name, _value in globals().items() if _name[0] != "_" and not isinstance(_value, types.ModuleType)
+           and not hasattr(builtins, _name)]

@@ -77,10 +77,10 @@ def fields_of(body):
         text = token.group(0)
         if text.startswith("/*"):
             doc = clean(text)
-            if last and "\n" not in body[last[0]:token.start()] and not last[2]:
-                for field in last[1]:
-                    field.doc = doc
-                last[2] = True
+            if last and "\n" not in body[last[0]:token.start()] and last[2] is not None:
+                for field in last[1]:                       # behind a field, perhaps after a comment in front of it
+                    field.doc = doc + (". " + field.doc if field.doc else "")
+                last[2] = None
             else:
                 pending, last = doc, []
             continue
@@ -96,8 +96,55 @@ def fields_of(body):
     return fields
 
 
+UNIT = r"(?:(?:m|s|kg|N|Pa|J|Hz|rad|W)\d*|[/ ()^\d])+"
+
+
+def parted(doc, names):
+    """A comment that several fields share as one for each, if it has as many parts as there are fields; None otherwise."""
+    found = re.match(r"((?:%s)(?:(?:, | and )%s){%d})(?=$|[.:,])(.*)$" % (UNIT, UNIT, len(names) - 1), doc, re.S)
+    if found:                                               # m, m/s, rad/s: of ...
+        return [unit + found.group(2) for unit in re.split(", | and ", found.group(1))]
+    parts, head, tail = [part.strip() for part in split(doc, ";")], "", ""
+    if len(parts) != len(names) or any(". " in part for part in parts[:-1]):
+        return None
+    own = all(re.match(r"%s\b" % name, part) for name, part in zip(names, parts))
+    if not own and any(re.match(r"(%s) (is|0|null)|\W*\d|otherwise|negative|compare|then\b|max|null|the pointers|both must|random mixtures" % "|".join(names), part)
+                       or " 0 means" in part for part in parts):
+        return None
+    first = re.match(r"([^;:\[]{1,90}): (.+)", parts[0])
+    last = re.match(r"([^:]*)(: .*)", parts[-1])
+    if own:
+        return [re.sub("^%s(?::| is|(?= null means)) " % name, "", part) for name, part in zip(names, parts)]
+    if first and " and " not in first.group(1):             # lost: by ...; by ...
+        head, parts[0] = first.group(1) + ": ", first.group(2)
+    elif last and re.fullmatch(UNIT, parts[0]) and last.group(1) != names[-1]:      # m; unit, from a to b: where ...
+        tail, parts[-1] = last.group(2), last.group(1)
+    parts = [re.sub("^(and|%s:) " % name, "", part) for name, part in zip(names, parts)]
+    for i, part in enumerate(parts[1:], 1):                 # J, lost on it by sliding; by the normal law
+        found = re.match(r"(by|to|of) ", part)
+        at = parts[0].find(" %s " % found.group(1)) if found else -1
+        if at > 0:
+            parts[i] = parts[0][:at + 1] + part
+    return [head + part + tail for part in parts]
+
+
+def share(fields):
+    """Gives fields that share a comment their parts of it."""
+    begin = 0
+    while begin < len(fields):
+        end = begin + 1
+        while end < len(fields) and fields[end].doc and fields[end].doc == fields[begin].doc:
+            end += 1
+        parts = parted(fields[begin].doc, [f.name for f in fields[begin:end]]) if end - begin > 1 else None
+        for f, part in zip(fields[begin:end], parts or ()):
+            f.doc = part
+        begin = end
+    return fields
+
+
 class Header:
     def __init__(self, text):
+        self.text = text
         public = text[text.index("\n#ifndef DEM_H\n"):text.index("\n#endif /* DEM_H */")]
         extra = re.search(r"#define DEM_LAW_COEFFICIENTS\(X\) \\\n((?: *X\(.*\\\n)*)", public).group(1)
         properties = re.findall(r"X\((\w+), (\w+),", extra)
@@ -129,6 +176,19 @@ class Header:
             text, length = self.declaration(rest)
             at += length
             self.declare(text, comment)
+
+    def reads(self, law):
+        """The fields of the force that a law, and the functions to which it passes the force, read and do not set."""
+        read, written, done, queue = set(), set(), set(), [law]
+        while queue:
+            name = queue.pop()
+            done.add(name)
+            body = re.search(r"DEM_INLINE [\w ]+?\b%s\(.*?\n\}\n" % name, self.text, re.S)
+            body = re.sub(r"/\*.*?\*/", "", body.group(0) if body else fail("no body of " + name), flags=re.S)
+            written |= set(re.findall(r"\bf->(\w+)(?:\.\w+)? [-+]?= ", body))
+            read |= set(re.findall(r"\bf->(\w+)\b(?!(?:\.\w+)? [-+]?= )", body))
+            queue += [other for other in re.findall(r"\b(demi?_law_\w+)\([^;]*?\bf\b(?!-)", body) if other not in done]
+        return [name for name in ("slope", "slope_step", "kt", "kt_step", "ct", "load") if name in read - written]
 
     @staticmethod
     def declaration(text):
@@ -170,7 +230,7 @@ class Header:
             return
         found = re.match(r"(?:typedef )?struct (\w+) \{(.*)\}[ \w]*;$", text, re.S)
         if found:
-            self.structs[found.group(1)] = (fields_of(found.group(2)), doc)
+            self.structs[found.group(1)] = (share(fields_of(found.group(2))), doc)
             return
         found = re.match(r"typedef ([\w ]+?\*?) ?\(\*(\w+)\)\((.*)\);$", text, re.S)
         if found:
@@ -205,14 +265,69 @@ def folded(line, width, indent):
                                                                  break_on_hyphens=False)]
 
 
+# comments of C in the words of Python: pattern, replacement; the first ones first
+SAY = [(r" ?\(>>\w+( has the formulas)?\)|, >>\w+(?=\))", ""), (r" Begin with DEM_\w+_DESC(: they do not)?\.", ""),
+       (r"\bDEM_SELECTION, all zero,", "Selection()"), (r"\bDEM_MOTION\b", "Motion()"),
+       (r" Free (it |the mesh |)with dem_\w+_free\.", ""),
+       (r"(Writes|writes) (the .*?|for every effect .*?|positions \(count x 3\) and radii \(count\)),? (at most `capacity` of them, )?and returns their number"
+        r"( \(0: the wall has no facets\))?\.", lambda m: ("Returns " if m.group(1) == "Writes" else "returns ") + m.group(2).rstrip(",") + "."),
+       (r"Writes (the ids .*?), at most `capacity` of them\. Returns how many are selected, -1 on error\.", r"Returns \1."),
+       (r", and returns how many it found \(0 if the call fails\)\. Writes at most `capacity` findings, the most severe first; `findings` or null\.",
+        ", and returns them, the most severe first."),
+       (r"Writes for every effect", "Returns for every effect"), (r": writes positions \(count x 3\) and radii \(count\), in m,", ": returns positions (count x 3) and "
+        "radii, m,"), (r"Writes pointers to the sums of a field to `data`\.", "Returns views of the sums of a field."),
+       (r" `(out|findings)` or null(, to count them)?\.", ""), (r" (user|work|fit|health|fn and user): or null\.", ""),
+       (r" walls: receives `count` ids; or null\.", ""), (r" user: not used, or null, as in the next three\.", ""),
+       (r"and, if `health` is not null, counts", "and counts"), (r"\(capacity x ", "(count x "),
+       (r"^Writes (the (?:state|contact properties|sums|loads|pose|desc|\w+(?: \w+)*?) of [^.]*?),? to `?\w+`?\.", r"Returns \1."),
+       (r"Returns the number of classes that are not empty; 0 on error\.", "Returns the radii and the amounts of the classes that are not empty."), (r"name: for error messages; or null\.", "name: for error messages."),
+       (r"(reads? \w+( \w+)*? from memory), `size` bytes at `data`", r"\1 (`data`)"), (r", `size` bytes at `data`", " (`data`)"),
+       (r"\bprogress: or null\.", "progress: a function, or None."), (r" desc: or null, for DEM_REPLAY_DESC\.", ""),
+       (r"; zeros (if there is none|for a null world)", ""), (r" For a null world the message says that it is null\.", ""),
+       (r" \(0 if the call fails\)", ""), (r"[,;] (-1|0) on error", ""), (r", -1 on error", ""),
+       (r"Returns -1 on error, also (while|if)", r"It is an error \1"), (r"Returns -1 (also )?(if|while)", r"It is an error \2"),
+       (r", and returns -1 where a step would fail", ""), (r"Returns their number\.", "Returns their number."),
+       (r"\bNull\b", "None"), (r"the null id\b", "the id 0"), (r"\bor null\b", "or None"), (r"\bnull\b", "None"), (r"\b([Ii])d 0 means", "None means"),
+       (r"\b(c|f|force|s)->", r"\1."), (r"(?<![\w)] )\*c\b", "c"), (r"\breturn(s?) DEM_ERROR_", r"raise\1 DEM_ERROR_"), (r"\bstruct (dem_\w+)", r"\1")]
+NUMBERS_DOC = ("The numbers (World(body_reals=...)) of %s. Values must be finite. Laws use them from the next step on. It is an error if the world has no "
+               "names of such numbers.")
+DOCS = {name: NUMBERS_DOC % what for name, what in (
+    ("dem_body_reals_get", "a body, as a copy"), ("dem_body_reals_set", "a body: sets them"), ("dem_wall_reals_get", "a wall, as a copy"),
+    ("dem_wall_reals_set", "a wall: sets them"), ("dem_bodies_reals_set", "all bodies, count x real_count: sets them, in the order of "
+                                                                        "world.bodies_memory"))}
+DOCS["dem_world_error_get"] = ('Returns the error message of the last call on this world that failed; "" if none failed. Exceptions have it already.')
+
+
 class Writer:
     def __init__(self, header):
         self.h, self.out = header, []
+        self.spoken = {}        # names of C in Python
         self.ids = [n for n, (fields, _) in header.structs.items()
                     if [f.name for f in fields] in (["id"], ["slot", "generation"])]
         self.typed = {}         # annotated signatures, by owner
         self.nulls = {}         # arguments that may be None, by function
         self.free = {f.name[:-5]: f.name for f in header.functions if f.name.endswith("_free")}
+
+    def say(self, text):
+        """A comment of dem.h in the words of Python."""
+        h = self.h
+        if not self.spoken:
+            self.spoken.update((f.name, self.called(f) if self.owner(f) or f.name == "dem_world_create_checked" else "dem." + self.called(f))
+                               for f in h.functions)
+            self.spoken.update(dem_world_create="World", dem_world_destroy="World.close", dem_replay_close="Replay.close")
+            self.spoken.update((name, camel(name)) for name in list(h.structs) + list(h.enums) + list(h.calls) + list(HANDLES))
+            for name, (values, _) in h.enums.items():
+                words = [value for value, _, _ in values]
+                prefix = os.path.commonprefix(words)
+                prefix = prefix[:prefix.rindex("_") + 1]
+                for word in words:
+                    self.spoken[word] = '"%s"' % word[len(prefix):].lower() if name != "dem_result" else (
+                        camel(word[len("DEM_ERROR_"):].lower()) + "Error" if "ERROR" in word else word)
+            self.spoken.update((name, "dem." + name[4:]) for name, _, _ in h.constants)
+            self.spoken.update(DEM_RAIL_="dem.RAIL_")
+        for pattern, words in SAY:
+            text = re.sub(pattern, words, text)
+        return re.sub(r"\b(dem_\w+|DEM_\w+)(\(\))?", lambda m: self.spoken.get(m.group(1), m.group(0)), text).replace("World.World.", "World.")
 
     def write(self, text=""):
         self.out.append(text.rstrip("\n"))
@@ -301,12 +416,12 @@ class Writer:
         if name == "dem_result":
             prefix = "DEM_"
         self.write("\n\nclass %s(enum.IntEnum):" % camel(name))
-        self.write(doc_lines(4, doc))
+        self.write(doc_lines(4, self.say(doc)))
         for value, number, note in values:
             short = value[len(prefix):]
             short = "_" + short if short[0].isdigit() else short
             if note:
-                for line in textwrap.wrap(note, 112):
+                for line in textwrap.wrap(self.say(note), 112):
                     self.write("    # " + line)
             self.write("    %s = %d" % (short, number))
 
@@ -314,14 +429,15 @@ class Writer:
         """A function type: how a Python function becomes a C function, and the type."""
         name = camel(f.name)
         struct_result = f.type in self.h.structs and not f.star
-        given, poison, pointers, kept = [], None, [], []
+        given, poison, pointers, kept, consts = [], None, [], [], []
         for a in f.arguments:
             if a.name == "user":
                 continue
             if a.pointer and a.type == "dem_world":
                 given.append("context.world(%s)" % a.name)
             elif a.pointer and a.type in self.h.structs:
-                kept.append((a.name, "%s.from_address(%s)" % (camel(a.type), a.name)))
+                kept.append((a.name, "%s(%s)" % (a.name + "_of" if a.const else camel(a.type) + ".from_address", a.name)))
+                consts += [a] if a.const else []
                 given.append("_" + a.name)
                 if not a.const and (poison is None or poison[1]):
                     poison = (a.name, False)
@@ -337,7 +453,7 @@ class Writer:
                 given.append(a.name)
         if struct_result:           # ctypes has no functions that return a struct: see World.__init__
             self.write("\n\n%s = Function(None, ctypes.c_void_p)" % name)
-            self.write("%s.__doc__ = %r" % (name, f.doc))
+            self.write("%s.__doc__ = %r" % (name, self.say(f.doc)))
             return
         names = ", ".join(a.name for a in f.arguments)
         self.write("\n\ndef _wrap_%s(function, context, struct):" % f.name)
@@ -345,8 +461,10 @@ class Writer:
             size = {"memory": "context.memory", "rates": "2" if "rate_fn" in f.name else "context.reals", "reals": "context.reals",
                     "values": "len((struct.columns or '').split())"}.get(a.name) or fail(
                         "no rule for the length of %s of %s" % (a.name, f.name))
-            self.write("    %s_type = " % a.name + ("_history(context.memory, context.vectors)" if a.name == "memory" else "%s*%s" % (
-                NUMBERS[a.type], "(%s)" % size if "(" in size else size)))
+            self.write("    %s_type = " % a.name + ("_history(context.memory, context.vectors)" if a.name == "memory" else
+                "_row_read(%s, %s)" % (NUMBERS[a.type], size) if a.const else "%s*%s" % (NUMBERS[a.type], "(%s)" % size if "(" in size else size)))
+        for a in consts:
+            self.write("    %s_of = _read(%s).from_address" % (a.name, camel(a.type)))
         result = "None" if f.type == "void" and not f.star else "ctypes.c_void_p" if f.star else self.plain(f.type)
         self.write("\n    def call(%s):" % names)
         self.write("        try:")
@@ -374,7 +492,8 @@ class Writer:
         if result not in ("None", "ctypes.c_void_p"):
             self.write("            return result")
         self.write("        except BaseException as error:")
-        self.write("            context.fail(error)")
+        self.write("            context.fail(%s)" % ("_beyond(error, %r, %s) if type(error) is IndexError else error" % (about, ", ".join(
+            "%s=%s_type" % (a.name, a.name) for a in pointers)) if pointers else "error"))
         if poison:
             self.write("            Real.from_address(%s).value = _NAN" % poison[0])
         if result in ("ctypes.c_double", "Real"):
@@ -385,7 +504,7 @@ class Writer:
         self.write("    return ctypes.cast(ctypes.CFUNCTYPE(%s)(call), %s.c)" % (", ".join([result] + kinds), name))
         self.write("\n\n%s = Function(%s)" % (name, ", ".join(
             ["_wrap_" + f.name, result] + [self.value(a, False) for a in f.arguments])))
-        self.write("%s.__doc__ = %r" % (name, f.doc))
+        self.write("%s.__doc__ = %r" % (name, self.say(f.doc)))
 
     def struct(self, name):
         fields, doc = self.h.structs[name]
@@ -405,9 +524,9 @@ class Writer:
                         a for arrays in self.counts(name, fields).values() for a, _ in arrays]
                     kind = "View(%s)" % ", ".join([self.plain(f.type)] + (shape or []) + (["const=True"] if f.const else [])
                                                   + (["one=True"] if one else []))
-            rows.append((f.name, kind, f.doc))
+            rows.append((f.name, kind, self.say(f.doc)))
         self.write("\n\n@_struct\nclass %s(%s):" % (camel(name), BASES.get(name) or ("Id" if name in self.ids else "Struct")))
-        self.write(doc_lines(4, doc or "The id of a %s." % name[4:]))
+        self.write(doc_lines(4, self.say(doc) or "The id of a %s." % name[4:]))
         self.write("    c_name = %r" % name)
         counts = self.counts(name, fields)
         if counts:
@@ -519,7 +638,7 @@ class Writer:
                 value = a.name
                 if kind == "dem_progress_fn":
                     value = "_go_on if %s is None else %s" % (a.name, a.name)
-                pre.append("%s = %s._callback(%s, %s)" % (a.name, world, camel(kind), value))
+                pre.append("%s = %s._callback(%s, %s, %s)" % (a.name, world, camel(kind), value, at(a)))
                 pass_on.append(a.name)
             elif a.name == "count" and counted:
                 pass_on.append("count")
@@ -556,11 +675,11 @@ class Writer:
                         "class_count" if any(x.name == "class_count" for x in args) else "%s._context.reals" % world)
                 if capacity:
                     pre.append("capacity = %s" % ("64" if "finding" in kind else "%s._number(_lib.%s(%s, None, 0))" % (world, f.name, ", ".join(pass_on))))
-                whole = item if width == 1 else "(%s*%d)" % (item, width)
+                whole = item if width == 1 else "_row(%s, %d)" % (item, width)
                 if size in ("count", "class_count") and not counted:
-                    pre.append("%s = (%s*_size_of(%s, %r))()" % (a.name, whole, size, "%s: %s" % (where, size)))
+                    pre.append("%s = _row(%s, _size_of(%s, %r))()" % (a.name, whole, size, "%s: %s" % (where, size)))
                 else:
-                    pre.append("%s = (%s*max(%s, 1))()" % (a.name, whole, size))
+                    pre.append("%s = _row(%s, max(%s, 1))()" % (a.name, whole, size))
                 pass_on.append("ctypes.cast(%s, ctypes.POINTER(%s))" % (a.name, item))
                 outs.append((a.name, size))
             elif a.name == "capacity":
@@ -618,6 +737,10 @@ class Writer:
         if fields:
             a, kind = fields
             members = self.h.structs[kind][0]
+            lengths = self.counts(kind, members)
+
+            def hidden(m):
+                return m.name in lengths or m.type == "void"
             base = f.name.endswith("_set") and any(g.name == f.name[:-4] + "_get" for g in h.functions)
             taken = {p for p, _ in params}
             sets = re.match(r"Sets ([\w, ]+)\.", f.doc)         # the fields that the function uses, if it names them
@@ -629,11 +752,11 @@ class Writer:
                 getter = next(g for g in h.functions if g.name == f.name[:-4] + "_get")
                 inner = ("self." + self.short(getter, owner)) if owner not in HANDLES else "self.%s(%s)" % (
                     self.short(getter, owner), ", ".join(p for p, _ in params))
-                pre.append("%s = %s" % (a.name, inner))
-                pre.append("%s._put({name: value for name, value in (%s,) if value is not None})" % (
-                    a.name, ", ".join("(%r, %s)" % (m, m) for m, _ in star)))
+                pre.append("%s = _renamed(lambda: %s, %r, %r)" % (a.name, inner, self.called(getter), where))
+                pre.append("%s._put({name: value for name, value in (%s,) if value is not None}, %r)" % (
+                    a.name, ", ".join("(%r, %s)" % (m, m) for m, _ in star), where + ": "))
             else:
-                pre.append("%s = %s(%s)" % (a.name, camel(kind), ", ".join("%s=%s" % (m, m) for m, _ in star)))
+                pre.append("%s = %s._of_call(%r, dict(%s))" % (a.name, camel(kind), where, ", ".join("%s=%s" % (m, m) for m, _ in star)))
             key = ", (%r, self)" % f.name if owner not in HANDLES else ""
             if any(m.call or m.type in h.calls or m.type in ("dem_motion", "dem_region") or m.type in self.ids for m in members):
                 pre.append("%s = %s._bound(%s%s)" % (a.name, world, a.name, key))
@@ -642,8 +765,8 @@ class Writer:
                 if m.name in taken:
                     continue
                 words = self.words(m)
-                if (m.doc or words) and (m.doc != note or words):
-                    docs.append("%s: %s" % (m.name, "; ".join(filter(None, (m.doc, words)))))
+                if (m.doc or words) and (m.doc != note or words) and not hidden(m):
+                    docs.append("%s: %s" % (m.name, "; ".join(filter(None, (self.say(m.doc), words)))))
                 note = m.doc
             if base:
                 docs.insert(0, "Fields that are not given stay as they are.")
@@ -655,12 +778,17 @@ class Writer:
                          + (["*"] if star else []) + ["%s=%s" % s for s in star])
         prop = owner and f.name.endswith("_get") and not params and not star
         variables = {a.name: a for a in f.arguments}
+        kinds_ = [f.type] if f.type in h.structs and not f.star else [variables[o].type for o, size in outs if variables[o].type in h.structs
+                                                                      and size is None]
         if fields:
             variables.update((m.name, m) for m in self.h.structs[fields[1]][0])
         hints, nulls = ["self"]*bool(owner), self.nulls.get(f.name, ())
         for p, d in params + [("*", "")]*bool(star) + star:
             hints.append(p if p == "*" else "%s: %s%s" % (
                 p, "TextIO | None" if p == "out" else self.hint(variables[p], d == "None" or (p, d) in star or p in nulls), " = ..." if d is not None else ""))
+        struct = kinds_[0] if prop and len(kinds_) == 1 and kinds_[0] not in self.ids else None
+        if struct:
+            self.parts.setdefault(HANDLES.get(owner) or camel(owner), {})[name] = camel(struct)
         self.typed.setdefault(owner, []).append("%s    def %s(%s) -> %s: ..." % (
             "    @property\n" if prop else "", name, ", ".join(hints), self.returned(f, owner, outs)))
         pad = "    " if owner else ""
@@ -671,7 +799,15 @@ class Writer:
             self.write(pad + "@property")
         lines = textwrap.wrap("def %s(%s):" % (name, text), 118 - len(pad) - 8, break_long_words=False, break_on_hyphens=False)
         self.write("\n".join([pad + lines[0]] + [pad + "        " + line for line in lines[1:]]))
-        self.write(doc_lines(len(pad) + 4, f.doc, docs))
+        made = self.returned(f, owner, outs)
+        if made == "Structs":
+            made = "Structs of " + camel(next(variables[o].type for o, size in outs))
+        if made == "ctypes.Array[Any]":
+            made = "Row"
+        if re.search("[A-Z]", made) and not made.endswith("None"):
+            made = re.sub(r"ctypes\.Array\[Any\]", "Row", made)
+            docs.append("Returns: %s" % re.sub(r"^list\[(\w+)\]$", r"a list of \1", re.sub(r"^tuple\[(.*)\]$", r"\1", made)))
+        self.write(doc_lines(len(pad) + 4, self.say(DOCS.get(f.name, f.doc)), docs))
         body = pre + self.ending(f, owner, world, call, outs, params)
         for line in body:
             inner = line[:len(line) - len(line.lstrip())]
@@ -777,7 +913,7 @@ class Writer:
         for name, base in (("ArgumentTypeError", "TypeError"), ("ArgumentRangeError", "OverflowError"), ("FieldError", "AttributeError"),
                            ("LoadError", "ImportError")):
             out.append("class %s(Error, builtins.%s): ..." % (name, base))
-        out.append("class NoSuchError(ArgumentError, builtins.IndexError): ...\n")
+        out.append("class NoSuchError(ArgumentError, builtins.IndexError): ...\nclass NoFieldError(ArgumentError, builtins.AttributeError): ...\n")
         for name, (fields, _) in h.structs.items():
             base = BASES.get(name) or ("Id" if name in self.ids else "Struct")
             out.append("class %s(%s):" % (camel(name), base))
@@ -830,7 +966,9 @@ class Writer:
                 return ["return (%s or b'').decode()" % call]
             return ["return " + call]
         if f.name == "dem_group_get":
-            return ["found = " + call, "%s._ok(0)" % world, "if not found:", "    %s._raise(ArgumentError)" % world,
+            return ["if not self.desc.groups:",
+                    "    raise _no_groups(name)",
+                    "found = " + call, "%s._ok(0)" % world, "if not found:", "    %s._raise(ArgumentError)" % world,
                     "found._of = %s" % world, "return found"]
         if f.name == "dem_body_id_get":
             return ["return %s.bodies[index]" % world]
@@ -874,10 +1012,10 @@ class Writer:
                 return ["found = %s" % call, "%s._filled(found, 0, %r)" % (world, f.name),
                         "return %s" % ", ".join("list(%s[:found])" % o for o, _ in outs)]
             if size == "capacity" and "finding" not in o:
-                return ["count = %s._number(%s)" % (world, call), "array = (%s._type_*count).from_buffer(%s)" % (o, o),
+                return ["count = %s._number(%s)" % (world, call), "array = _row(%s._type_, count).from_buffer(%s)" % (o, o),
                         "return [item.of(%s) for item in array]" % world if kinds[o] in self.ids else
                         "return Structs(array)" if kinds[o] in h.structs else "return array"]
-            return ["count = %s._number(%s)" % (world, call), "return list(%s[:min(count, len(%s))])" % (o, o)]
+            return ["count = %s._number(%s)" % (world, call), "return list(_fixed(%s)[:min(count, len(%s))])" % (o, o)]
         if f.type == "int" and re.search(r"_(fill|pack)$", f.name):
             return ["return %s._filled(%s, count, %r)" % (world, call, f.name)]
         if f.type == "int" or f.name == "dem_sizes_finer_get":
@@ -912,7 +1050,7 @@ class Writer:
 
     def file(self):
         h = self.h
-        self.names = {}
+        self.names, self.parts = {}, {}
         self.write(HEAD)
         for name, value, note in h.constants:
             self.write("%s = %s%s" % (name[4:], value, "    # " + note if note else ""))
@@ -936,6 +1074,12 @@ class Writer:
                 if not (found or as_for or "o contact history" in f.doc):
                     fail("the comment of %s does not say what contact history it needs" % f.name)
                 self.write("    %r: %r," % (f.name[4:], needs[f.name[4:]]))
+        self.write("}\n")
+        self.write("_LAW_READS = {      # fields of the force that a friction or rolling law reads, which a normal law sets")
+        for law in needs:
+            fields = h.reads("dem_" + law)
+            if fields:
+                self.write("    %r: %r," % (law, tuple(fields)))
         self.write("}\n")
         self.errors()
         with open(os.path.join(HERE, "base.py")) as file:
@@ -975,12 +1119,12 @@ class Writer:
         docs, note = [], None
         for m in members:
             words = self.words(m)
-            if (m.doc or words) and (m.doc != note or words):
-                docs.append("%s: %s" % (m.name, "; ".join(filter(None, (m.doc, words)))))
+            if (m.doc or words) and (m.doc != note or words) and m.type != "void":
+                docs.append("%s: %s" % (m.name, "; ".join(filter(None, (self.say(m.doc), words)))))
             note = m.doc
         init = WORLD % ("\n".join(["    " + lines[0]] + ["            " + line for line in lines[1:]]),
                         doc_lines(8, "Creates an empty world. ArgumentError says which value is out of range.", docs),
-                        textwrap.fill("self._create(WorldDesc(%s))" % ", ".join("%s=%s" % (m.name, m.name) for m in members), 108,
+                        textwrap.fill("self._create(WorldDesc._of_call(\"World\", dict(%s)))" % ", ".join("%s=%s" % (m.name, m.name) for m in members), 108,
                                       initial_indent=" "*8, subsequent_indent=" "*12))
         h.functions.remove(create)
         self.create = create
@@ -1002,6 +1146,14 @@ class Writer:
         self.write("]")
         self.write("\nfor _name in %s:" % '[name for name in Bodies.kinds if name not in ("count", "real_count")]')
         self.write("    setattr(Rows, _name, _row_property(_name, next(doc for name, _, doc in Bodies.rows if name == _name)))")
+        self.write("_PARTS = {      # structs that properties return")
+        for owner, parts in self.parts.items():
+            for line in folded("%r: {%s}," % (owner, ", ".join("%r: %s" % pair for pair in parts.items())), 114, "    "):
+                self.write("    " + line)
+        self.write("}")
+        self.write("_bind_all(globals())")
+        self.write('__all__ = [_name for _name, _value in globals().items() if _name[0] != "_" and not isinstance(_value, types.ModuleType)')
+        self.write("           and not hasattr(builtins, _name)]")
         for owner, names in self.names.items():
             for name in names:
                 if names.count(name) > 1:
@@ -1045,7 +1197,11 @@ class LoadError(Error, ImportError):
 
 
 class NoSuchError(ArgumentError, IndexError):
-    """There is no body of this number."""
+    """There is no body, element or row of this number."""
+
+
+class NoFieldError(ArgumentError, AttributeError):
+    """There is no field or attribute of this name."""
 '''
 
 ZEROS = {("dem_world_settle", "speed"), ("dem_effects_get", "budget"), ("dem_effects_print", "budget"),
@@ -1063,7 +1219,7 @@ HEAD = '''"""dem.py gives dem.h to Python: ctypes and the standard library, noth
     print(ball.state.position)
 
 make.py made this file from dem.h and base.py: change those, then `make python`. docs/python.md is the manual. The texts
-below are the comments of dem.h, which name C functions. Rules of names:
+below are the comments of dem.h with the names of Python. Rules of names:
 
     dem_world_step(world, 1)                world.step(1)           functions of a world are methods
     dem_sphere_add(world, ...)              world.sphere(...)       _add, _get, _open, _create are dropped
@@ -1077,6 +1233,7 @@ below are the comments of dem.h, which name C functions. Rules of names:
     DEM_ERROR_TIME_STEP                     raises dem.TimeStepError, whose text is the error message
     struct dem_motion                       dem.Motion, or keyword arguments: wall.motion_set(kind="rotating", ...)
 """
+import builtins
 import ctypes
 import enum
 import functools
@@ -1088,6 +1245,7 @@ import math
 import operator
 import os
 import platform
+import re
 import shutil
 import signal
 import subprocess
@@ -1175,6 +1333,33 @@ class Structs:
     def __getitem__(self, index: Any) -> Any: ...
     def __array__(self, dtype: Any = ..., copy: Any = ...) -> Any: ...
     def to_dict(self) -> dict[str, list[Any]]: ...
+
+class Array:
+    view: memoryview
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    ndim: int
+    nbytes: int
+    itemsize: int
+    readonly: bool
+    format: str
+    def __init__(self, view: Any) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: Any) -> Any: ...
+    def __setitem__(self, index: Any, value: Any) -> None: ...
+    def __iter__(self) -> Iterator[Any]: ...
+    def __array__(self, dtype: Any = ..., copy: Any = ...) -> Any: ...
+    def tolist(self) -> list[Any]: ...
+    def tobytes(self) -> bytes: ...
+
+class Row(ctypes.Array[Any]):
+    def __add__(self, other: Any) -> Any: ...
+    def __radd__(self, other: Any) -> Any: ...
+    def __sub__(self, other: Any) -> Any: ...
+    def __rsub__(self, other: Any) -> Any: ...
+    def __mul__(self, other: Any) -> Any: ...
+    def __rmul__(self, other: Any) -> Any: ...
+    def __truediv__(self, other: Any) -> Any: ...
 
 class Page:
     def __init__(self, path: str | os.PathLike[str], height: int = ...) -> None: ...

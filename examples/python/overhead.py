@@ -81,7 +81,7 @@ def main():
         lines.append("%s = %.3g %s" % (name, value, unit))
         print(lines[-1], flush=True)
 
-    header = os.path.dirname(os.path.dirname(dem._lib.path if "path" in vars(dem._lib) else dem.build()))
+    header = os.path.dirname(dem._header())
     dem.load()
     with tempfile.TemporaryDirectory() as work:
         source, path = os.path.join(work, "c.c"), os.path.join(work, "c.so")

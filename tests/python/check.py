@@ -88,10 +88,10 @@ def compiled(name, text, *flags):
 def _():
     world, glass = heap()
     text = "7"
-    for call, *words in ((lambda: world.material(density=text, young=1e6, restitution=0.5), "MaterialDesc.density"),
-                         (lambda: world.material(density=True, young=1e6, restitution=0.5), "MaterialDesc.density", "True"),
-                         (lambda: dem.World(threads=1.5), "WorldDesc.threads", "1.5"),
-                         (lambda: dem.World(body_reals=5), "WorldDesc.body_reals"),
+    for call, *words in ((lambda: world.material(density=text, young=1e6, restitution=0.5), "World.material: density: "),
+                         (lambda: world.material(density=True, young=1e6, restitution=0.5), "World.material: density: ", "True"),
+                         (lambda: dem.World(threads=1.5), "World: threads: ", "1.5"),
+                         (lambda: dem.World(body_reals=5), "World: body_reals: "),
                          (lambda: world.step(1.5), "World.step: steps: ", "1.5"), (lambda: world.step(text), "World.step: steps: "),
                          (lambda: world.sphere(glass, text, (0, 0, 1)), "World.sphere: radius: "),
                          (lambda: world.sphere(glass, 0.001, (0, 0, text)), "World.sphere: position: ", "Vec3.z"),
@@ -101,7 +101,7 @@ def _():
         raises(TypeError, call, *words)
     for wide in (2**32 + 1, -2**32 + 2, 2**31, 2**64):
         raises(OverflowError, lambda: world.step(wide), "World.step", str(wide))
-        raises(OverflowError, lambda: dem.World(threads=wide), "WorldDesc.threads", str(wide))
+        raises(OverflowError, lambda: dem.World(threads=wide), "World: threads: ", str(wide))
         raises(OverflowError, lambda: setattr(dem.WorldDesc(), "threads", wide), "WorldDesc.threads")
     raises(ValueError, lambda: dem.Selection(bodies=[dem.Body(1, 0)], count=100), "Selection.count", "100")
     same(dem.Region(box=(0, 0, 0, 1, 1, 1), cylinder="z").cylinder, ord("z"))
@@ -557,7 +557,7 @@ def _():
                                  (world, "run", "World.run"), (ball, "velocity", "Body.velocity", "set"), (state, "velocity", "Body.set"),
                                  (state.velocity, "x", "Body.set"), (glass.desc, "friction", "Material.set"), (wall, "id", "Wall"),
                                  (world.totals, "mass", "Totals.mass"), (world.desc, "dt", "WorldDesc.dt"),
-                                 (dem.Motion(), "sped", "sped", "velocity")):
+                                 (dem.Motion(), "sped", "sped", "speed")):
         error = raises(AttributeError, lambda: setattr(target, name, 1), *words)
         same(isinstance(error, dem.Error), True, name)
     copied = copy.copy(state)
@@ -586,13 +586,13 @@ def _():
             (TypeError, lambda: world.sphere(None, 0.01, (0, 0, 1)), "World.sphere: material: None", "Material"),
             (TypeError, lambda: world.sphere(1, 0.01, (0, 0, 1)), "World.sphere: material: 1 (int)"),
             (TypeError, lambda: world.sphere(body, 0.01, (0, 0, 1)), "World.sphere: material: Body"),
-            (ValueError, lambda: dem.World(gravity=(0, -9.81)), "WorldDesc.gravity: 2 numbers", "3"),
-            (ValueError, lambda: dem.World(domain=(1, 1, 1)), "WorldDesc.domain", "3"),
-            (TypeError, lambda: dem.World(gravity="down"), "WorldDesc.gravity", "down"),
-            (TypeError, lambda: dem.World(gravity=-9.81), "WorldDesc.gravity", "-9.81"),
-            (ValueError, lambda: dem.World(boundary=["periodic"], domain=(0, 0, 0, 1, 1, 1)), "WorldDesc.boundary", "1", "3"),
-            (TypeError, lambda: dem.World(boundary="periodic"), "WorldDesc.boundary", "3 words"),
-            (ValueError, lambda: dem.World(normal_law=77), "WorldDesc.normal_law", "77", "hertz"),
+            (ValueError, lambda: dem.World(gravity=(0, -9.81)), "World: gravity: 2 numbers", "3"),
+            (ValueError, lambda: dem.World(domain=(1, 1, 1)), "World: domain: ", "3"),
+            (TypeError, lambda: dem.World(gravity="down"), "World: gravity: ", "down"),
+            (TypeError, lambda: dem.World(gravity=-9.81), "World: gravity: ", "-9.81"),
+            (ValueError, lambda: dem.World(boundary=["periodic"], domain=(0, 0, 0, 1, 1, 1)), "World: boundary: ", "1", "3"),
+            (TypeError, lambda: dem.World(boundary="periodic"), "World: boundary: ", "3 words"),
+            (ValueError, lambda: dem.World(normal_law=77), "World: normal_law: ", "77", "hertz"),
             (TypeError, lambda: dem.Vec3(1, 2), "Vec3", "2 values"),
             (ValueError, lambda: world.sphere(steel, 0.01, (0, 0, 1)), "World.sphere: material", "another world"),
             (ValueError, lambda: world.joint(kind="revolute", a=body), "World.joint: a: ", "another world"),
@@ -695,7 +695,7 @@ def _():
     raises(OSError, lambda: dem.compile("/nowhere/law.c"), "/nowhere/law.c")
     other = ctypes.CDLL(compiled("float.so", "const int dempy_real_size = %d;\nvoid law(void) { }\n" % (12 - ctypes.sizeof(dem.Real)),
                                  "-shared", "-fPIC"))
-    raises(ValueError, lambda: dem.World(law=other.law), "WorldDesc.law", "compiled for reals of")
+    raises(ValueError, lambda: dem.World(law=other.law), "World: law: ", "compiled for reals of")
 
 
 @test("a world is not closed by a function that it calls")
@@ -1168,6 +1168,307 @@ def _():
     same(force.normal > 0 and dem.memory_rotate(given, (1, 0, 0)).x == 1, True)
 
 
+# ---- what a user sees first ----
+
+@test("after an exception in a function and after Ctrl-C only the exception is printed, and no later run quotes dem.h")
+def _():
+    code = ("import sys, threading, _thread; sys.path.insert(0, %r); import dem\n"
+            "def fail(*_): raise KeyError('mine')\n"
+            "kind = sys.argv[1]\n"
+            "more = {'law': dict(law=fail, law_stiffness=1e4), 'law on 2 threads': dict(law=fail, law_stiffness=1e4, threads=2)}\n"
+            "more = more.get(kind, {kind: fail} if kind in ('force', 'body_force', 'growth') else {})\n"
+            "with dem.World(gravity=(0, 0, -9.81), **more) as world:\n"
+            "    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5)\n"
+            "    wall = world.wall_plane(glass, (0, 0, 0), (0, 0, 1))\n"
+            "    world.sphere(glass, 0.01, (0, 0, 0.0099))\n"
+            "    if kind == 'motion': wall.motion_set(kind='user', function=fail)\n"
+            "    if kind == 'output': world.output(function=fail, interval=1e-3)\n"
+            "    if kind == 'trials':\n"
+            "        world.trials_run(duration=0.01, budget=1, observables=[dem.Observable(name='x', function=fail)])\n"
+            "    if kind == 'interrupt': threading.Timer(0.1, _thread.interrupt_main).start()\n"
+            "    world.run(1e3 if kind == 'interrupt' else 0.1, fail if kind == 'progress' else None)\n" % PYTHON)
+    for kind in ("law", "law on 2 threads", "force", "body_force", "growth", "motion", "output", "progress", "trials", "interrupt"):
+        done = subprocess.run([sys.executable, "-B", "-c", code, kind], capture_output=True, text=True, timeout=60)
+        same((done.stderr.rstrip().split("\n")[-1], "dem.h:" in done.stderr), ("KeyboardInterrupt" if kind == "interrupt" else "KeyError: 'mine'",
+                                                                             False), kind + ": " + done.stderr[-300:])
+
+    def fail(*_):
+        raise KeyError("mine")
+    world, glass = heap()
+    wall = world.wall_plane(glass, (0, 0, 5), (0, 0, -1))
+    raises(KeyError, lambda: wall.motion_set(kind="user", function=fail))
+    world.run(0.001)                                        # the message of dem_wall_motion_set has been read
+
+
+@test("arguments that do not fit raise a TypeError that is a dem.Error: misspelled, without a name, missing, too many")
+def _():
+    world, glass = heap()
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    contact, force = dem.Contact(), dem.ContactForce()
+    for call, *words in ((lambda: world.material(density=1, restituion=0.5), "World.material: there is no argument 'restituion'", "restitution"),
+                         (lambda: world.material(2500, 1e7), "World.material: 2500, 10000000.0 are given without a name", "density=..."),
+                         (lambda: dem.World(garvity=(0, 0, 1)), "World: there is no argument 'garvity'; did you mean gravity?"),
+                         (lambda: dem.World((0, 0, 1)), "World: (0, 0, 1) is given without a name", "gravity=..."),
+                         (lambda: world.sphere(glass, raduis=1, position=(0, 0, 1)), "World.sphere: ", "'raduis'", "radius"),
+                         (lambda: world.sphere(glass, 0.01), "World.sphere: position is missing", "(material, radius, position)"),
+                         (lambda: world.sphere(glass, 0.01, (0, 0, 1), 5), "World.sphere: 4 arguments are given, it takes 3"),
+                         (lambda: world.sphere(glass, 0.01, radius=1, position=(0, 0, 1)), "World.sphere: radius is given twice"),
+                         (lambda: world.run(), "World.run: seconds is missing"), (lambda: world.run(1, 2, 3), "at most 2"),
+                         (lambda: world.run(secs=1), "World.run: ", "'secs'", "seconds"), (lambda: world.close(5), "World.close: 1 argument"),
+                         (lambda: ball.set(velocty=(0, 0, 1)), "Body.set: ", "'velocty'", "did you mean velocity?"),
+                         (lambda: ball.set((0, 0, 1)), "Body.set: (0, 0, 1) is given without a name"),
+                         (lambda: glass.set(fricton=1), "Material.set: ", "friction"), (lambda: ball.of(), "Body.of: world is missing"),
+                         (lambda: world.wall_plane(glass, (0, 0, 0)), "World.wall_plane: normal is missing"),
+                         (lambda: world.bodies.to_dict(1), "Rows.to_dict: 1 argument is given, it takes none"),
+                         (lambda: dem.Motion(sped=1), "Motion has no field 'sped'", "did you mean speed?"),
+                         (lambda: dem.Vec3.make(), "Vec3.make: value is missing"), (lambda: dem.Vec3().dot(), "Vec3.dot: other is missing"),
+                         (lambda: dem.law_spring(contact, force), "dem.law_spring: f is missing", "(c, memory, f)"),
+                         (lambda: dem.law_hertz(contact, force=force), "dem.law_hertz: ", "'force'"),
+                         (lambda: dem.compile("", flag=1), "dem.compile: ", "'flag'", "flags"), (lambda: dem.Page(), "Page: path is missing"),
+                         (lambda: dem.quat_about(), "dem.quat_about: axis, angle are missing"), (lambda: dem.tail(), "dem.tail: ")):
+        same(isinstance(raises(TypeError, call, *words), dem.Error), True, words[0])
+
+    def wrong():
+        return (lambda a: a)()                              # a TypeError inside of a call stays
+    raises(TypeError, lambda: world.run(0.001, lambda *_: wrong()), "missing 1 required positional argument: 'a'")
+    for function in (dem.World.material, dem.World.sphere, dem.Body.set, dem.law_spring, dem.World.__init__):
+        same("fields" in str(inspect.signature(function)) or "values" in str(inspect.signature(function)), False, "signature")
+    same(list(inspect.signature(dem.World.sphere).parameters), ["self", "material", "radius", "position"])
+
+
+@test("nothing that a call returned or that a function may only read can be changed: fields, arrays, elements, vectors")
+def _():
+    import pickle
+    world, glass = heap()
+    world.spheres(glass, [(0, 0, 0.0099), (0.019, 0, 0.0099)], radius=0.01)
+    world.step(1)
+    for change, *words in ((lambda: world.totals.centre.__setitem__(0, 9), "array[0]"), (lambda: world.totals.centre.__setitem__(slice(0, 2), [1, 2]),),
+                           (lambda: setattr(world.contacts[0], "overlap", 1), "ContactInfo.overlap"), (lambda: setattr(world.effects()[0], "text", 1),),
+                           (lambda: setattr(world.contacts[0].normal, "x", 1), "Vec3.x"), (lambda: setattr(world.gravity, "z", 1), "world.gravity = ("),
+                           (lambda: world.cell_state.rate.__setitem__(0, 1), "array[0]"), (lambda: setattr(world.gravity, "z", 1), "Vec3.z")):
+        same(isinstance(raises(AttributeError, change, *words), dem.Error), True)
+    means = copy.copy(world.totals)
+    means.centre[0] = 9                                     # of a copy
+    same(means.centre[0], 9.0)
+    feed = dem.FeedDesc(radius=[1, 2], amount=[1, 2])
+    feed.radius[0] = 5                                      # of a struct that the user made
+    same(list(feed.radius[:2]), [5, 2])
+    seen = []
+
+    def law(c, memory, force):
+        for change in (lambda: setattr(c, "overlap", 0), lambda: setattr(c.normal, "x", 0), lambda: setattr(c.who, "a", dem.Body())):
+            seen.append(str(raises(AttributeError, change, "a function may only read it")))
+        kept = copy.copy(c)
+        kept.overlap = 7
+        same((type(kept), kept.overlap, type(pickle.loads(pickle.dumps(c))), kept == c, repr(c)[:8]), (dem.Contact, 7.0, dem.Contact, False, "Contact("))
+        force.normal = 1e4*c.overlap
+
+    def lift(body, id, time, force, torque):
+        raises(AttributeError, lambda: setattr(body.velocity, "x", 0), "a function may only read it")
+        force.z = 1
+    def heat(reals, rates, body, id, time, dt):
+        raises(AttributeError, lambda: rates.__setitem__(0, 1.0), "a function may only read it")
+        raises(IndexError, lambda: rates[1], "numbers 0 to 0")
+        reals[0] = rates[0] + 1
+    warm, glass = heap(body_reals="heat", body_reals_fn=heat)
+    warm.sphere(glass, 0.01, (0, 0, 0.5))
+    warm.step(2)
+    same(warm.bodies.reals.tolist(), [[1]])
+    other, glass = heap(law=law, law_stiffness=1e4, body_force=lift)
+    other.sphere(glass, 0.01, (0, 0, 0.0099))
+    other.step(2)
+    same(len(seen) >= 3, True)
+
+
+@test("arrays of structs and views of numbers are pickled, and a process may return them")
+def _():
+    import pickle
+    world, glass = heap(body_reals="heat")
+    world.spheres(glass, [(0, 0, 0.0099), (0.019, 0, 0.0099)], radius=0.01)
+    world.step(1)
+    mesh = dem.Mesh(vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], triangles=[(0, 1, 2)])
+    table = dem.Motion(kind="table", table=[dem.MotionRow(0, (0, 0, 0)), dem.MotionRow(1, (0, 0, 1))]).table
+    for thing in (world.contacts, world.bodies.positions, world.bodies.masses, world.bodies.slots, world.bodies_memory.velocities, mesh.vertices,
+                  mesh.triangles, world.totals.centre, world.candidates, table, world.body_id(0).reals, world.bodies.positions[1],
+                  world.bodies.positions[:, 2], world.bodies.positions[:, :3]):
+        for made in (pickle.loads(pickle.dumps(thing)), copy.copy(thing), copy.deepcopy(thing)):
+            same((made == thing, len(made), repr(made)), (True, len(thing), repr(thing)))
+    same(pickle.loads(pickle.dumps(world.contacts)).to_dict(), world.contacts.to_dict())
+    same(len(pickle.loads(pickle.dumps(heap()[0].bodies.to_dict()))["x"]), 0)
+
+
+@test("arrays are indexed and iterated by rows without numpy, and wrong indices raise by name")
+def _():
+    world, glass = heap()
+    world.spheres(glass, [(0.1*i, 0, 1) for i in range(5)], radius=0.01)
+    p = world.bodies.positions
+    same((p[1].tolist(), [x for x, y, z, radius in p], p[-1, 2], len(p), p.shape), ([0.1, 0, 1, 0.01], [0.1*i for i in range(5)], 1.0, 5, (5, 4)))
+    same((p[1:3].tolist(), p[:, 0].tolist(), p[::2].shape, p[:, :3].shape, p[1, :2].tolist()), (
+        p.tolist()[1:3], [0.1*i for i in range(5)], (3, 4), (5, 3), [0.1, 0]))
+    same((p == p.tolist(), p == world.bodies.positions, world.bodies.masses[1:].shape, sum(world.bodies.masses) > 0), (True, True, (4,), True))
+    for call, *words in ((lambda: p[5], "5", "(5, 4)"), (lambda: p[0, 4], "(0, 4)", "(5, 4)"), (lambda: p["a"], "'a'"), (lambda: p[0, 0, 0], "2 axes"),
+                         (lambda: p.mean, "mean", "numpy.asarray"), (lambda: p.__setitem__((0, 0), 1), "read-only"),
+                         (lambda: world.totals.centre[3], "numbers 0 to 2"), (lambda: world.totals.centre["a"],)):
+        raises(dem.Error, call, *words)
+    raises(TypeError, lambda: p.__setitem__(0, (1, 2, 3, 4)))
+    mesh = dem.Mesh(vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)], triangles=[(0, 1, 2)])
+    mesh.vertices[0] = (1, 2, 3)
+    mesh.vertices[1, 2] = 9
+    same(mesh.vertices.tolist(), [[1, 2, 3], [1, 0, 9], [0, 1, 0]])
+    raises(ValueError, lambda: mesh.vertices.__setitem__(0, (1, 2)), "(1, 2)")
+    world.bodies.positions = p[:, :3]
+    same(world.bodies.positions == p, True)
+    same("0.1" in repr(p) and repr(world.totals.centre)[0] == "[", True)
+
+
+@test("a contact history, columns and numbers of bodies are not used beyond their end: the message says what there is")
+def _():
+    for memory, text in ((3, "numbers 0 to 2"), (0, "no numbers")):
+        world, glass = heap(law=lambda c, memory, force: memory[3], law_stiffness=1e4, law_memory=memory)
+        world.sphere(glass, 0.01, (0, 0, 0.0099))
+        same(isinstance(raises(IndexError, lambda: world.step(1), "your function (law)", text, "law_memory"), dem.Error), True)
+    world, glass = heap()
+    world.output(kind="csv", path=os.path.join(WORK.name, "beyond.csv"), columns="a b", interval=1e-3,
+                 values=lambda world, out: out.__setitem__(5, 1.0))
+    raises(IndexError, lambda: world.run(0.01), "your function", "numbers 0 to 1", "columns")
+    world, glass = heap(law=lambda c, memory, force: [][3], law_stiffness=1e4)
+    world.sphere(glass, 0.01, (0, 0, 0.0099))
+    raises(IndexError, lambda: world.step(1), "list index out of range")
+
+
+@test("an array with the radius in column 4 is refused with the remedy; only an array that fits then is to be transposed")
+def _():
+    world, glass = heap()
+    world.spheres(glass, [(0.1*i, 0, 1) for i in range(3)], radius=0.01)
+    p = world.bodies.positions
+    for array in (p, p.tolist()):
+        text = str(raises(ValueError, lambda: setattr(world.bodies, "positions", array), "leave out"))
+        same("transpose" in text, False, text)
+    raises(ValueError, lambda: world.spheres(glass, p, radius=0.01), "leave out column 4: array[:, :3]")
+    for shape, fits in (([3, 6], True), ([6, 2], False)):
+        view = memoryview((ctypes.c_double*(shape[0]*shape[1]))()).cast("B").cast("d", shape)
+        same("transpose" in str(raises(ValueError, lambda: world.spheres(glass, view, radius=0.01))), fits)
+        same("transpose" in str(raises(ValueError, lambda: setattr(world.bodies, "positions", view))), False)
+
+
+@test("a world without bodies gives empty columns")
+def _():
+    columns = dem.World(body_reals="heat").bodies.to_dict()
+    same((columns["x"], columns["mass"], columns["material"], columns["heat"], len(columns)), ([], [], [], [], 16))
+
+
+@test("a friction or rolling law without the stiffness or load that it reads raises, or warns once, by name")
+def _():
+    def run(name, **fields):
+        def law(c, memory, force):
+            force.normal = 1e4*c.overlap + 0.3*c.closing_speed
+            for field, value in fields.items():
+                setattr(force, field, value)
+            getattr(dem, name)(c, memory, force)
+        world, glass = heap(law=law, law_stiffness=1e4, law_memory=4, law_vectors=1)
+        glass.set(rolling_friction=0.1)
+        world.sphere(glass, 0.01, (0, 0, 0.0099)).set(velocity=(0.1, 0, 0))
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            world.step(5)
+        return [str(warning.message) for warning in seen]
+    same(dem._LAW_READS["law_spring"], ("kt", "ct", "load"))
+    same(dem._LAW_READS["law_roll_epsd"], ("slope", "slope_step", "load"))
+    for _ in range(2):                                      # in each world
+        raises(dem.ArgumentError, lambda: run("law_spring"), "dem.law_spring: force.kt and load are 0", "dem.law_load")
+    raises(dem.ArgumentError, lambda: run("law_mindlin"), "force.kt and kt_step and load")
+    for name, fields, lost in (("law_spring", dict(kt=8e3), "load"), ("law_spring", dict(load=1), "kt"), ("law_viscous", dict(ct=1), "load"),
+                               ("law_mindlin", dict(kt=8e3, load=1), "kt_step"), ("law_roll_step", {}, "load"), ("law_roll_epsd", dict(
+                                   slope=1e4, load=1), "slope_step")):
+        seen = run(name, **fields)
+        same((len(seen), "dem.%s: force.%s is 0" % (name, lost) in seen[0]), (1, True), name)
+    same((run("law_spring", kt=8e3, load=1), run("law_mindlin", kt=8e3, kt_step=8e3, load=1), run("law_viscous", ct=1, load=1)), ([], [], []))
+
+
+@test("messages name what to write: of vectors, arrays of bodies, ids, groups, options of a world")
+def _():
+    world, glass = heap()
+    ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+    for kind, call, *words in (
+            (AttributeError, lambda: setattr(world.gravity, "z", -1), "world.gravity = ("),
+            (AttributeError, lambda: setattr(world.bodies, "radius", [1]), "World.bodies.radius", "radius_set"),
+            (AttributeError, lambda: setattr(world.bodies, "masses", [1]), "World.bodies.masses", "radius_set"),
+            (AttributeError, lambda: setattr(world.bodies, "velocity", [1]), "world.bodies.velocities = "),
+            (AttributeError, lambda: setattr(ball, "velocity", (0, 0, 1)), "Body.velocity", "body.set(velocity=...)"),
+            (AttributeError, lambda: setattr(ball, "radius", 1), "call body.radius_set"),
+            (AttributeError, lambda: setattr(glass, "friction", 1), "material.set(friction=...)"),
+            (AttributeError, lambda: ball.position, "body.state.position"), (AttributeError, lambda: glass.friction, "material.desc.friction"),
+            (AttributeError, lambda: ball.velocty, "did you mean body.state.velocity?"), (AttributeError, lambda: glass.frction, "material.desc.friction"),
+            (TypeError, lambda: world.pair_set("glass", glass, friction=1), "World.pair_set: a: 'glass'"),
+            (TypeError, lambda: dem.World(gravity=-9.81), "World: gravity: -9.81"), (TypeError, lambda: world.feed(radius="a"), "World.feed: radius: "),
+            (TypeError, lambda: world.wall_plane(glass, (0, 0, 0), (0, 0, 1)).motion_set(kind="rotating", speed="a"), "Wall.motion_set: speed: "),
+            (TypeError, lambda: world.cell_set(rate="a"), "World.cell_set: rate: "), (TypeError, lambda: world.run(1e-3, "p"), "World.run: progress: 'p'"),
+            (ValueError, lambda: dem.World(threads=100), "threads=100"), (ValueError, lambda: dem.World(law_memory=99), "law_memory=99"),
+            (ValueError, lambda: world.group("coarse"), "World.group: 'coarse'", "World(groups='coarse')"),
+            (ValueError, lambda: world.contacts, "world.step", "world.candidates_rebuild"), (ValueError, lambda: dem.World(groups="a a"), "groups: 'a'"),
+            (ValueError, lambda: dem.World(body_reals=["a", "b", "a"]), "World: body_reals: 'a' is given twice")):
+        same(isinstance(raises(kind, call, *words), dem.Error), True, words[0])
+    same("first call dem_" in str(raises(dem.Error, lambda: world.contacts)), False)
+    other, steel = heap()
+    ball = other.sphere(steel, 0.01, (0, 0, 1))
+    other.close()
+    raises(dem.Error, lambda: ball.state, "Body.state: this world is closed")
+    raises(dem.Error, lambda: ball.remove(), "Body.remove: this world is closed")
+    same((hasattr(ball, "shape"), hasattr(world, "__array__"), repr(dem.Page("a.html"))), (False, False, "dem.Page('a.html')"))
+    same("open" in repr(world.replay(os.path.join(WORK.name, "shown.html"))), True)
+
+
+@test("arrays in structs show their numbers and take part in sums and products")
+def _():
+    world, glass = heap()
+    world.sphere(glass, 0.01, (1, 2, 3))
+    centre = world.totals.centre
+    same((repr(centre), centre == (1, 2, 3), centre - (1, 1, 1), 2*centre, centre/2, (1, 1, 1) - centre, centre - centre, dem.Vec3(1, 1, 1) + centre),
+         ("[1.0, 2.0, 3.0]", True, [0, 1, 2], [2, 4, 6], [0.5, 1, 1.5], [0, -1, -2], [0, 0, 0], (2, 3, 4)))
+    same((abs(dem.World().totals.centre), list(centre), centre[-1], list(centre[:2])), (0, [1, 2, 3], 3.0, [1, 2]))
+    raises(TypeError, lambda: centre + (1, 2))
+    try:
+        import numpy
+    except ImportError:
+        return
+    same(((numpy.ones(3) + centre).tolist(), (centre*numpy.ones(3)).tolist(), numpy.asarray(centre).shape), ([2, 3, 4], [1, 2, 3], (3,)))
+
+
+@test("from dem import * leaves Python's own names and exports no modules")
+def _():
+    code = "import sys; sys.path.insert(0, %r)\nfrom dem import *\nprint(compile is __builtins__.compile, MemoryError is __builtins__.MemoryError, 'World' in " \
+           "globals(), 'os' in globals(), 'law_hertz' in globals())" % PYTHON
+    done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True)
+    same(done.stdout.split(), ["True", "True", "True", "False", "True"], done.stderr)
+    same([name for name in dem.__all__ if inspect.ismodule(getattr(dem, name))], [])
+
+
+@test("help() speaks of Python: no names, pointers or error codes of C; functions say what they return, fields have their own comment")
+def _():
+    texts = {}
+    for kind in [dem.World, dem.Replay, dem.Slabs, dem] + dem.structs:
+        texts[kind.__name__] = kind.__doc__ if kind is not dem else ""
+        for name, member in vars(kind).items():
+            member = member.fget if isinstance(member, property) else member
+            if name[0] != "_" and inspect.isfunction(member) and member.__module__ == "dem" and (kind is dem or not hasattr(dem.Struct, name)):
+                texts["%s.%s" % (kind.__name__, name)] = member.__doc__
+    same(len(texts) > 250, True, "docstrings")
+    for name, text in texts.items():
+        if name not in ("dem.build", "dem.load", "dem.compile"):            # which speak of the environment
+            found = re.search(r"\b[Nn]ull\b|Free with|on error|[Rr]eturns -1|`out`|capacity|\bdem_\w+|\bDEM_(?!DOMAIN_BODIES|NO_|ROW_GROUP|LAW)\w+|>>\w|\w->\w|Returns: None", text or "")
+            same(found and text[max(0, found.start() - 60):found.end() + 20], None, name)
+    for kind, name, words in ((dem.Body, "state", "Returns: BodyState"), (dem.World, "contacts", "Returns: Structs of ContactInfo"),
+                              (dem.World, "sphere", "Returns: Body"), (dem.World, "check", "Returns: a list of Finding"),
+                              (dem.World, "mesh_read", "Returns: Mesh, MeshHealth")):
+        member = inspect.getattr_static(kind, name)
+        same(words in inspect.getdoc(member), True, name)
+    for kind, lines in ((dem.BodyState, ("position: m\n", "velocity: m/s\n", "torque: N m: of the last step")), (dem.Totals, ("momentum: momentum, kg m/s",)),
+                        (dem.Motion, ("frequency: Hz: of oscillating walls",)), (dem.Ledger, ("walls: supplied: work of moving walls",)),
+                        (dem.ContactForce, ("load: N, >= 0: L of Coulomb", "elastic: N, the part of"))):
+        for line in lines:
+            same(line in kind.__doc__, True, "%s in the docstring of %s" % (line, kind.__name__))
+
+
 # ---- all calls ----
 
 @test("no call with wrong values in any argument ends the process, and each exception is a dem.Error")
@@ -1187,12 +1488,12 @@ def _():
                        (lambda: world.step(2**40), "World.step: steps: 1099511627776 is given, must be from -2147483648 to 2147483647"),
                        (lambda: world.vtp_write(5), "World.vtp_write: path: 5 (int) is given, a text is wanted"),
                        (lambda: world.vtp_write("a\0b"), "World.vtp_write: path: b'a\\x00b' (bytes) is given, a text without the character 0 is wanted"),
-                       (lambda: ball.set(velocity=3), "BodyState.velocity: 3 (int) is given, a Vec3, or 3 numbers (x, y, z) is wanted"),
-                       (lambda: world.run(1, progress=True), "World.run: True (bool) is given, a function is wanted"),
+                       (lambda: ball.set(velocity=3), "Body.set: velocity: 3 (int) is given, a Vec3, or 3 numbers (x, y, z) is wanted"),
+                       (lambda: world.run(1, progress=True), "World.run: progress: True (bool) is given, a function is wanted"),
                        (lambda: world.output_every("vtu", "a.vtu", 1), "World.output_every: kind: OutputKind has no 'vtu'; it has "),
                        (lambda: world.report(5), "report: out: 5 (int) is given, a file of Python is wanted"),
-                       (lambda: world.slabs(axis="x"), "SlabsDesc.axis: 'x' (str) is given, a whole number is wanted"),
-                       (lambda: dem.World(body_reals=5), "WorldDesc.body_reals: 5 (int) is given, a text is wanted"),
+                       (lambda: world.slabs(axis="x"), "World.slabs: axis: 'x' (str) is given, a whole number is wanted"),
+                       (lambda: dem.World(body_reals=5), "World: body_reals: 5 (int) is given, a text is wanted"),
                        (lambda: copy.copy(world), "a World owns memory of dem.h and cannot be copied or pickled")):
         error = raises(dem.Error, call)
         same(str(error)[:len(text)], text)
