@@ -1633,6 +1633,24 @@ def alike(shown, printed, varies, what):
         raise AssertionError("%s: the page %s" % (what, (result.stdout or result.stderr)[-800:]))
 
 
+@test("dem.h is found beside dem.py, also through a symlink and by PYTHONPATH; without it the message names the places")
+def _():
+    show = "import dem; print(dem._header())"
+    header = os.path.join(ROOT, "dem.h")
+    with tempfile.TemporaryDirectory() as folder:
+        env = environment()
+        env.pop("DEM_H", None)
+        run = lambda: subprocess.run([sys.executable, "-B", "-c", show], capture_output=True, text=True, cwd=folder, env=env)
+        assert os.path.samefile(run().stdout.strip(), header)                          # by PYTHONPATH, which environment() sets
+        env["PYTHONPATH"] = folder
+        os.symlink(os.path.join(PYTHON, "dem.py"), os.path.join(folder, "dem.py"))
+        assert os.path.samefile(run().stdout.strip(), header)
+        os.remove(os.path.join(folder, "dem.py"))
+        shutil.copy(os.path.join(PYTHON, "dem.py"), folder)
+        lost = run().stderr
+        assert os.path.isfile("/usr/local/include/dem.h") or "dem.h was not found" in lost and folder in lost, lost
+
+
 @test("the Python programs of docs/python.md run and print what the page shows")
 def _():
     parts = ["import io, sys", "from contextlib import redirect_stdout"]
