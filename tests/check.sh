@@ -185,7 +185,8 @@ else skip "gcc -m32 does not link (Debian package gcc-multilib)"; fi
 # programs are ten times as slow: it leaves the hard cases and these tests out, which would take hours. Where an emulator
 # runs the programs, only three.
 emulator=
-long="api|corona|decompose|exam|facets|joints|kept|memory|polyhedra|rocks|rotation|search|shapes|sieve_rocks|slabs|trials|tumbler"
+long="api|body_reals|bonds|cell|cells|corona|decompose|exam|facets|flats|flush|growth|joints|kept|members|memory|more_laws|"
+long="$long""polygons|polyhedra|rocks|rotation|search|servo|shapes|sieve_rocks|slabs|solvers|surfaces|tessellate|trials|tumbler"
 tests() {
     turn=1
     names=$(for t in tests/*/test_*.c tests/hard/hard_*.c; do echo "build/$(basename "$t" .c)"; done)
