@@ -200,8 +200,16 @@ static int rel_zero_force(const rel_case *c, rel_scene *s, int on) {
     rel_leave_feeds(s);
     return rel_zero_world(s, "force", rel_code_of("no_force"), on);
 }
+/* Without friction spins stay as they are, although the torques of contacts have some round-off; a body force may bring
+   torques, so spins are integrated then. Both scenes have friction. */
 static int rel_zero_couple(const rel_case *c, rel_scene *s, int on) {
+    int i;
     (void)c;
+    rel_leave_field(s, REL_PAIR, "friction");
+    for (i = 0; i < s->count; i++) {
+        const rel_set *v = s->op[i].call == REL_MATERIAL ? rel_given_in(&s->op[i], "friction") : 0;
+        if (s->op[i].call == REL_MATERIAL && (!v || !(v->v[0] > 0))) rel_put(&s->op[i], "friction", 0.3);
+    }
     rel_leave_feeds(s);
     return rel_zero_world(s, "body_force", rel_code_of("no_couple"), on);
 }

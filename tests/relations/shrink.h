@@ -56,7 +56,7 @@ static int rel_fewer_fields(rel_shrinking *h) {
             rel_op *op = &rel_smaller.op[i];
             rel_copy(&rel_smaller, h->s);
             if (!rel_needed(&h->s->op[i], f)) rel_drop_set(op, j);
-            else if (!strcmp(f->name, "shape")) {
+            else if (!strcmp(f->name, "shape") && op->call == REL_A_BODY) {
                 rel_drop_set(op, j);
                 rel_put(op, "radius", 1e-3);
             } else if (!strcmp(f->name, "d.b") && f->type == REL_BODY && v->v[0] >= 0) op->set[j].v[0] = -1;
