@@ -433,9 +433,6 @@ static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
         for (e = at; e < r->keep; e++) t->rows.memory[e][q] = memory[e][q];
     }
 }
-DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
-    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
-}
 /* Adds a force and a moment on a body at point `at` to the sums of its wall, with opposite sign.
    surface: velocity of the wall there, m/s. */
 DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,

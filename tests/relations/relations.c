@@ -9,6 +9,8 @@
        build/relations --add build/one.log --add build/two.log   the sums of two shares, without a run
        build/relations --scenes 600 --page docs/relations.md  also writes the table
        build/relations --scenes 600 --messages                ... and what refused or stopped scenes said
+       build/relations --scenes 600 --hashes        no relations: prints the hash of each scene after its last step,
+                                                    to see with diff in which scenes two versions of dem.h differ
 
    The last line is "relations: N scenes, C checks, B broken"; the exit code is 1 if a relation is broken. */
 #include "shrink.h"
@@ -24,6 +26,7 @@ typedef struct rel_counts {
 } rel_counts;
 static rel_counts rel_all;
 static double rel_seconds[REL_RELATIONS];
+static int rel_hashing;                        /* --hashes */
 enum { REL_MESSAGES = 200, REL_ATTEMPTS = 3 };
 static struct { char head[200]; int count, stopped; } rel_said[REL_MESSAGES];
 
@@ -124,6 +127,11 @@ static int rel_check_scene(rel_scene *s, int most, const char *only, int print) 
     }
     if (!(c.base.contacts + c.base.wall_contacts)) { rel_all.still++; rel_close_case(&c); return 0; }
     rel_all.scenes++;
+    if (rel_hashing) {
+        printf("%llu %016llx\n", (unsigned long long)s->seed, (unsigned long long)c.base.hash);
+        rel_close_case(&c);
+        return 0;
+    }
     rel_pairs(rel_all.pair, s, &c.base);
     r.s = s->seed*2 + 1;
     for (i = 0; i < REL_RELATIONS; i++) order[i] = i;
@@ -265,6 +273,7 @@ static int rel_options_read(rel_options *o, int count, char **argument) {
         char *end;
         if (!strcmp(argument[i], "--print")) { o->print = 1; continue; }
         if (!strcmp(argument[i], "--messages")) { o->messages = 1; continue; }
+        if (!strcmp(argument[i], "--hashes")) { rel_hashing = 1; continue; }
         if (!strcmp(argument[i], "--seed")) o->seed = strtoull(value, 0, 10);
         else if (!strcmp(argument[i], "--scenes")) o->scenes = strtoull(value, 0, 10);
         else if (!strcmp(argument[i], "--relation")) o->only = value;
