@@ -4055,9 +4055,9 @@ static void demi_parallel(dem_world *w, int threads, int count, const double *mi
 }
 /* 1: worlds use as many threads as their desc says. See >>team. */
 #ifdef DEM_THREADS_FIXED
-enum { DEMI_CREW_FIXED = 1 };
+enum { DEMI_THREADS_FIXED = 1 };
 #else
-enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
+enum { DEMI_THREADS_FIXED = !DEMI_OPENMP };
 #endif
 /* Number of threads to use if desc.threads is 0. */
 static int demi_threads_available(void) {
@@ -5242,14 +5242,14 @@ typedef struct demi_output {
    demi_calls has changed it, so that demi_called restores it. */
 typedef struct demi_calling { const char *who; int within, set; } demi_calling;
 
-/* How many threads a world uses, see demi_crew_judge. Not part of the state. */
-typedef struct demi_crew {
+/* How many threads a world uses, see demi_threads_judge. Not part of the state. */
+typedef struct demi_threads {
     int now, best;                 /* threads of this step; of steps outside trials */
     int steps, turn, fixed;        /* steps measured; kind of the last trial; 1: no trials */
     double begun, sum, cost;       /* s: start of the step; time of `steps`; per step with `best` */
     double since, wait;            /* s: since the last trial, until the next one */
     uint64_t rebuilds;             /* when this step began */
-} demi_crew;
+} demi_threads;
 
 /* Observers of a run: outputs, replays, progress. Not part of the state, except `written` of
    outputs: reading a checkpoint does not change them. */
@@ -5271,8 +5271,8 @@ typedef struct demi_lookers {
 /* Data of the solvers for impulses, set up again in every step (>>impulses). demi_meeting: the
    constraint of a contact. demi_impulse: the same contact as solvers iterate over it. demi_beside:
    its data that sweeps do not need. demi_twist: its rolling and spinning friction. demi_mover:
-   velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_knot: a body or
-   joint in the linear system of all joints. */
+   velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_joint_node: a
+   body or joint in the linear system of all joints. */
 struct demi_meeting;
 struct demi_impulse;
 struct demi_beside;
@@ -5280,7 +5280,7 @@ struct demi_twist;
 struct demi_mover;
 struct demi_run_sums;
 struct demi_rod;
-struct demi_knot;
+struct demi_joint_node;
 struct demi_link_of;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
@@ -5300,11 +5300,11 @@ typedef struct demi_solver {
     struct demi_run_sums *runs;    /* sums over each run of contacts, a block of one colour */
     struct demi_rod *rods;         /* one per joint */
     int32_t *joined;               /* of each body: its first joint, see demi_joined */
-    struct demi_knot *knots;       /* unknowns of the joints' linear system: bodies and joints */
-    int32_t *knot_of, *rows;       /* knot of each body; row of each entry of the factor */
+    struct demi_joint_node *nodes; /* unknowns of the joints' linear system: bodies and joints */
+    int32_t *node_of, *rows;       /* node of each body; row of each entry of the factor */
     struct demi_link_of *links;
     double *blocks;                /* x 36: pivots of the factor, and entries below them */
-    int knot_count, row_count, link_count, factored;
+    int node_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; range of the colour being swept; its first run */
     int limited;                   /* contacts at their friction limit in the last unsolved step */
     int twisted;                   /* 1: there is rolling or spinning friction */
@@ -5461,7 +5461,7 @@ struct dem_world {
     double wall_fastest;           /* m/s, fastest wall point of the step */
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
-    demi_crew crew;                /* >>team: threads in use */
+    demi_threads threads;                /* >>team: threads in use */
     int facets_valid;              /* surfaces fit the walls and their motions */
     int sheeted;                   /* 1: some surface may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */
@@ -5480,7 +5480,7 @@ struct dem_world {
     int written_count;             /* >>output: outputs in the checkpoint that was read last */
     demi_written *written;
     struct demi_sphere *crowd;     /* >>placing: occupancy tree of spheres, and its nodes */
-    struct demi_node *crowd_nodes;
+    struct demi_crowd_node *crowd_nodes;
     dem_real *crowd_turned;        /* x 4: orientations of the bodies placed */
     double dt_share;               /* trials: factor on the automatic time step; 0: 1 */
     struct demi_press *press;      /* loads on bodies, while >>advice chooses the time step */
@@ -5618,7 +5618,7 @@ DEM_INLINE dem_real demi_radius(const dem_world *w, int i) { return w->bodies.po
    on several threads cannot. */
 static void demi_domains_do(dem_world *w, demi_task task) {
     const demi_calling was = demi_calls(w, "a step", 1);
-    demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
+    demi_parallel(w, w->threads.now, w->domain_count, w->domain_middle, task);
     demi_called(w, was);
 }
 /* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this
@@ -6399,7 +6399,7 @@ static int demi_sane(double x, double least) { return demi_finite_double(x) && x
    exchange data of ghost particles and agree on maxima and failures. A single world has no team and
    is its own only member: an exchange then does nothing, and an agreement returns the member's own
    numbers. struct demi_team in >>layout lists the functions of a team; >>slabs-step provides them
-   for slabs. At the end, the number of threads of a single world. Owns w->crew.
+   for slabs. At the end, the number of threads of a single world. Owns w->threads.
    --------------------------------------------------------------------------------------------- */
 
 /* Return the number of members in this process, and member k. In all parts `h` is the head of a
@@ -6442,23 +6442,23 @@ static void demi_dt_share(dem_world *h) {
    time; after a successful one it tries again at once. Trials take at most some 5 % of the time.
    Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
    desc. --- */
-enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
+enum { DEMI_THREADS_STEPS = 12 };                  /* steps of a trial */
 /* True if the number of threads of a world is to be chosen. */
-static int demi_crew_varies(const dem_world *h) {
-    return !h->crew.fixed && !h->team && h->desc.threads > 1;
+static int demi_threads_varies(const dem_world *h) {
+    return !h->threads.fixed && !h->team && h->desc.threads > 1;
 }
-static void demi_crew_begin(dem_world *h) {
+static void demi_threads_begin(dem_world *h) {
     int k;
     for (k = 0; k < demi_members(h); k++) {
-        demi_crew *c = &demi_member(h, k)->crew;
+        demi_threads *c = &demi_member(h, k)->threads;
         if (!c->best) c->best = c->now = demi_member(h, k)->desc.threads;
     }
-    h->crew.rebuilds = h->clock.rebuilds;
-    if (demi_crew_varies(h)) h->crew.begun = demi_clock();
+    h->threads.rebuilds = h->clock.rebuilds;
+    if (demi_threads_varies(h)) h->threads.begun = demi_clock();
 }
 /* The number of threads to try next: half as many as now, one, or twice as many, in turns. `slow`:
    steps have become slower, perhaps since another program keeps cores busy. */
-static int demi_crew_other(demi_crew *c, int most, int slow) {
+static int demi_threads_other(demi_threads *c, int most, int slow) {
     int k, n = c->best;
     for (k = 0; k < 3 && n == c->best; k++) {
         c->turn = slow && !k ? 1 : (c->turn + 1)%3;
@@ -6467,14 +6467,14 @@ static int demi_crew_other(demi_crew *c, int most, int slow) {
     return n;
 }
 /* Starts a measurement with `now` threads, which may be `best`. */
-static void demi_crew_try(demi_crew *c, int now) {
+static void demi_threads_try(demi_threads *c, int now) {
     c->now = now;
     c->steps = 0;
     c->sum = 0;
 }
 /* Decides by the time of a step, s, how many threads take the next one. */
-static void demi_crew_judge(dem_world *w, double took) {
-    demi_crew *c = &w->crew;
+static void demi_threads_judge(dem_world *w, double took) {
+    demi_threads *c = &w->threads;
     const int first = !(c->cost > 0), trial = c->now != c->best;
     double lost;
     if (!trial) c->since += took;
@@ -6484,7 +6484,7 @@ static void demi_crew_judge(dem_world *w, double took) {
     lost = c->sum - c->steps*c->cost;
     if (trial) {
         const int worse = lost > 4*c->cost;
-        if (!worse && c->steps < DEMI_CREW_STEPS) return;
+        if (!worse && c->steps < DEMI_THREADS_STEPS) return;
         c->wait = DEMI_MAX(20*lost, DEMI_MAX(400*c->cost, DEMI_MIN(2*c->wait, 10)));
         if (!worse && c->sum < 0.97*c->steps*c->cost) {
             c->best = c->now;
@@ -6492,17 +6492,17 @@ static void demi_crew_judge(dem_world *w, double took) {
             c->wait = 0;                        /* perhaps farther the same way */
         }
         c->since = 0;
-        demi_crew_try(c, c->best);
+        demi_threads_try(c, c->best);
     } else {
-        const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
-        if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
+        const int slow = !first && lost > 2*DEMI_THREADS_STEPS*c->cost;
+        if (c->steps < (first ? 2 : DEMI_THREADS_STEPS) && !slow) return;
         c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
-        demi_crew_try(c, first || slow || c->since > c->wait
-                      ? demi_crew_other(c, w->desc.threads, slow) : c->best);
+        demi_threads_try(c, first || slow || c->since > c->wait
+                      ? demi_threads_other(c, w->desc.threads, slow) : c->best);
     }
 }
-static void demi_crew_end(dem_world *w) {
-    if (demi_crew_varies(w)) demi_crew_judge(w, demi_clock() - w->crew.begun);
+static void demi_threads_end(dem_world *w) {
+    if (demi_threads_varies(w)) demi_threads_judge(w, demi_clock() - w->threads.begun);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -13368,10 +13368,10 @@ static int demi_join_double(dem_world *w, demi_join *j) {
 /* --- facets in one plane that cover each other --- */
 
 /* A convex piece of a triangle. */
-enum { DEMI_SHARD = 12 };
-typedef struct demi_shard { int count; demi_d3 x[DEMI_SHARD]; } demi_shard;
+enum { DEMI_PIECE_CORNERS = 12 };
+typedef struct demi_facet_piece { int count; demi_d3 x[DEMI_PIECE_CORNERS]; } demi_facet_piece;
 /* The width of a piece, m: twice its area over the length of its outline. */
-static double demi_shard_width(const demi_shard *s) {
+static double demi_piece_width(const demi_facet_piece *s) {
     demi_d3 area = demi_d(0, 0, 0);
     double around = 0;
     int k;
@@ -13382,25 +13382,25 @@ static double demi_shard_width(const demi_shard *s) {
     }
     return around > 0 ? demi_d3_length(area)/around : 0;
 }
-static demi_shard demi_shard_of(const demi_join *j, int i) {
-    demi_shard s;
+static demi_facet_piece demi_piece_of(const demi_join *j, int i) {
+    demi_facet_piece s;
     for (s.count = 0; s.count < 3; s.count++)
         s.x[s.count] = demi_d3_at(j->x + 3*j->facet[5*i + s.count]);
     return s;
 }
-static demi_d3 demi_shard_normal(const demi_shard *t) {
+static demi_d3 demi_piece_normal(const demi_facet_piece *t) {
     return demi_d3_unit(demi_d3_normal(t->x[0], t->x[1], t->x[2]));
 }
 /* The directions into a triangle from its sides, unit. */
-static void demi_shard_inward(const demi_shard *t, demi_d3 *in) {
-    const demi_d3 n = demi_shard_normal(t);
+static void demi_piece_inward(const demi_facet_piece *t, demi_d3 *in) {
+    const demi_d3 n = demi_piece_normal(t);
     int k;
     for (k = 0; k < 3; k++)
         in[k] = demi_d3_unit(demi_d3_cross(n, demi_d3_sub(t->x[(k + 1)%3], t->x[k])));
 }
 /* True if a triangle of corners c (x 3) is beyond a side of triangle s, or touches it there. in: of
    s. */
-DEM_INLINE int demi_shard_beyond(const demi_shard *s, const demi_d3 *in, const double *c,
+DEM_INLINE int demi_piece_beyond(const demi_facet_piece *s, const demi_d3 *in, const double *c,
                                  double tiny) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -13412,36 +13412,36 @@ DEM_INLINE int demi_shard_beyond(const demi_shard *s, const demi_d3 *in, const d
     return 0;
 }
 /* Clips a piece to side k of triangle t; out: to what is beyond that side. */
-static void demi_shard_clip(demi_shard *s, const demi_shard *t, int k, int out) {
+static void demi_piece_clip(demi_facet_piece *s, const demi_facet_piece *t, int k, int out) {
     const demi_d3 e = demi_d3_sub(t->x[(k + 1)%3], t->x[k]);
-    const demi_d3 in = demi_d3_cross(demi_shard_normal(t), e);
+    const demi_d3 in = demi_d3_cross(demi_piece_normal(t), e);
     s->count = demi_polygon_clip(s->x, s->count, out ? demi_d3_scale(in, -1) : in, t->x[k]);
 }
 /* True if triangle t covers a part of triangle s wider than `tiny`, m, in the same plane. */
-static int demi_shard_covered(const demi_shard *s, const demi_shard *t, double tiny) {
-    const demi_d3 n = demi_shard_normal(t);
-    demi_shard common = *s;
+static int demi_piece_covered(const demi_facet_piece *s, const demi_facet_piece *t, double tiny) {
+    const demi_d3 n = demi_piece_normal(t);
+    demi_facet_piece common = *s;
     int k;
     for (k = 0; k < 3; k++)
         if (!(fabs(demi_d3_dot(n, demi_d3_sub(s->x[k], t->x[0]))) <= tiny)) return 0;
-    for (k = 0; k < 3; k++) demi_shard_clip(&common, t, k, 0);
-    return demi_shard_width(&common) > tiny;
+    for (k = 0; k < 3; k++) demi_piece_clip(&common, t, k, 0);
+    return demi_piece_width(&common) > tiny;
 }
 /* Removes from the pieces of a facet what triangle t covers. Returns 0 if memory ran out. */
-static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const demi_shard *t,
-                            double tiny) {
+static int demi_pieces_less(dem_world *w, demi_facet_piece **pieces, int *count,
+                            const demi_facet_piece *t, double tiny) {
     const int all = *count;
     int i, k, left = 0;
     if (!demi_grow(w, DEMI_LOOSE, pieces, sizeof **pieces, 4*(size_t)all)) return 0;
     memmove(*pieces + 3*all, *pieces, (size_t)all*sizeof **pieces);
     for (i = 0; i < all; i++) {
-        demi_shard rest = (*pieces)[3*all + i];
-        for (k = 0; k < 3 && rest.count < DEMI_SHARD; k++) {
-            demi_shard *out = &(*pieces)[left];
+        demi_facet_piece rest = (*pieces)[3*all + i];
+        for (k = 0; k < 3 && rest.count < DEMI_PIECE_CORNERS; k++) {
+            demi_facet_piece *out = &(*pieces)[left];
             *out = rest;
-            demi_shard_clip(out, t, k, 1);
-            left += demi_shard_width(out) > tiny;
-            demi_shard_clip(&rest, t, k, 0);
+            demi_piece_clip(out, t, k, 1);
+            left += demi_piece_width(out) > tiny;
+            demi_piece_clip(&rest, t, k, 0);
         }
         if (k < 3) (*pieces)[left++] = rest;    /* too many corners: covered twice, but no hole */
     }
@@ -13449,7 +13449,8 @@ static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const
     return 1;
 }
 /* Adds the pieces of facet i as facets. Returns 0 if memory ran out. */
-static int demi_join_shards(dem_world *w, demi_join *j, int i, const demi_shard *piece, int count) {
+static int demi_join_pieces(dem_world *w, demi_join *j, int i, const demi_facet_piece *piece,
+                            int count) {
     int p, k, m;
     for (p = 0; p < count; p++, piece++) {
         const size_t points = (size_t)(j->points + piece->count);
@@ -13502,7 +13503,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     double *half = (double *)demi_alloc(w, (size_t)all*3, sizeof *half);
     double *corner = (double *)demi_alloc(w, (size_t)all*9, sizeof *corner);
     unsigned char *gone = (unsigned char *)demi_alloc(w, (size_t)all, 1);
-    demi_shard *pieces = 0;
+    demi_facet_piece *pieces = 0;
     demi_tree tree;
     int i, k, m, any = 0, ok = middle && half && corner && gone;
     memset(&tree, 0, sizeof tree);
@@ -13521,35 +13522,35 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     ok = ok && demi_tree_make(w, &tree, middle, all);
     for (i = 0; i < all && ok; i++) {
         const double *at = middle + 3*i, *size = half + 3*i;
-        const demi_shard own = demi_shard_of(j, i);
+        const demi_facet_piece own = demi_piece_of(j, i);
         const double tiny = j->near_by[j->facet[5*i]];
         demi_search_line line;
         demi_d3 in[3];
         int32_t other;
         int count = 0;
-        demi_shard_inward(&own, in);
+        demi_piece_inward(&own, in);
         demi_tree_line(&line, &tree, at, at, DEMI_MAX(size[0], DEMI_MAX(size[1], size[2])));
         while (ok && (other = demi_tree_next(&line)) >= 0) {
             const int32_t shell = j->facet[5*i + 4], its = j->facet[5*other + 4];
             const int closed = shell >= 0 && its >= 0 && shell != its;
-            demi_shard t;
+            demi_facet_piece t;
             if (other == i || (other > i && !closed)) continue;
             for (k = 0; k < 3; k++)
                 if (fabs(middle[3*other + k] - at[k]) > half[3*other + k] + size[k] + tiny) break;
-            if (k < 3 || demi_shard_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
-            t = demi_shard_of(j, other);
-            if (other > i && demi_d3_dot(demi_shard_normal(&t), demi_shard_normal(&own)) > 0)
+            if (k < 3 || demi_piece_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
+            t = demi_piece_of(j, other);
+            if (other > i && demi_d3_dot(demi_piece_normal(&t), demi_piece_normal(&own)) > 0)
                 continue;
-            if (!demi_shard_covered(&own, &t, tiny)) continue;
+            if (!demi_piece_covered(&own, &t, tiny)) continue;
             if (!gone[i]) {
                 ok = demi_grow(w, DEMI_LOOSE, &pieces, sizeof *pieces, 1);
                 if (ok) pieces[0] = own;
                 count = 1;
                 any = gone[i] = 1;
             }
-            if (ok && count) ok = demi_shards_less(w, &pieces, &count, &t, tiny);
+            if (ok && count) ok = demi_pieces_less(w, &pieces, &count, &t, tiny);
         }
-        if (ok && gone[i]) ok = demi_join_shards(w, j, i, pieces, count);
+        if (ok && gone[i]) ok = demi_join_pieces(w, j, i, pieces, count);
     }
     if (ok && any) ok = demi_join_again(w, j, gone, all);
     demi_free(w, middle);
@@ -13905,16 +13906,16 @@ static int demi_join_coarsen(dem_world *w, demi_join *j) {
 
 /* A tessellation while it is made. Points and facets are appended; `failed` is set if memory ran
    out. */
-typedef struct demi_form {
+typedef struct demi_draft {
     dem_world *w;
     int per, points, facets, failed;           /* per: corners of a facet, 3 or 2 (>>layout) */
     dem_real *x;                   /* points x 3, m, in the wall's frame */
     int32_t *corner;               /* facets x per */
     double chord;                  /* m, largest distance from curves */
     dem_vec3 step[2];              /* m, in the wall's frame: the surface repeats; 0: it does not */
-} demi_form;
-typedef void (*demi_tessellate_fn)(const demi_wall *wall, demi_form *form);
-static int32_t demi_form_point(demi_form *f, double x, double y, double z) {
+} demi_draft;
+typedef void (*demi_tessellate_fn)(const demi_wall *wall, demi_draft *draft);
+static int32_t demi_draft_point(demi_draft *f, double x, double y, double z) {
     if (!demi_grow(f->w, DEMI_LOOSE, &f->x, sizeof(dem_real), 3*((size_t)f->points + 1))) {
         f->failed = 1;
         return 0;
@@ -13923,37 +13924,37 @@ static int32_t demi_form_point(demi_form *f, double x, double y, double z) {
     return f->points++;
 }
 /* Adds a triangle, or (per 2) the segment from a to b. */
-static void demi_form_facet(demi_form *f, int32_t a, int32_t b, int32_t c) {
+static void demi_draft_facet(demi_draft *f, int32_t a, int32_t b, int32_t c) {
     const int32_t all[3] = {a, b, c};
     if (f->failed || !demi_grow(f->w, DEMI_LOOSE, &f->corner, sizeof(int32_t),
                                 (size_t)f->per*((size_t)f->facets + 1))) f->failed = 1;
     else memcpy(f->corner + f->per*f->facets++, all, (size_t)f->per*sizeof *all);
 }
-static void demi_form_quad(demi_form *f, int32_t a, int32_t b, int32_t c, int32_t d) {
-    demi_form_facet(f, a, b, c);
-    demi_form_facet(f, a, c, d);
+static void demi_draft_quad(demi_draft *f, int32_t a, int32_t b, int32_t c, int32_t d) {
+    demi_draft_facet(f, a, b, c);
+    demi_draft_facet(f, a, c, d);
 }
-static void demi_form_free(demi_form *f) {
+static void demi_draft_free(demi_draft *f) {
     demi_free(f->w, f->x);
     demi_free(f->w, f->corner);
 }
 /* The number of sides of a circle of radius r. */
 enum { DEMI_FORM_LEAST = 24, DEMI_FORM_MOST = 12288 };
-static int demi_form_sides(const demi_form *f, double r) {
+static int demi_draft_sides(const demi_draft *f, double r) {
     int n = DEMI_FORM_LEAST;
     while (n < DEMI_FORM_MOST && DEMI_PI*DEMI_PI*r/2 > f->chord*n*n) n *= 2;
     return n;
 }
 /* The corner radius of a polygon of n sides that has the area of a circle of radius r. */
-static double demi_form_radius(double r, int n) {
+static double demi_draft_radius(double r, int n) {
     const double turn = 2*DEMI_PI/n;
     return r*sqrt(turn/demi_sin(turn));
 }
 /* Adds a regular polygon of n points about (x, y) at height z. Returns the first. axis: 2 across z,
    0 across x, 1 across y: z, x and y are then along, and across the axis in cyclic order. */
-static int32_t demi_form_ring(demi_form *f, int axis, int n, double r, double u, double v,
+static int32_t demi_draft_ring(demi_draft *f, int axis, int n, double r, double u, double v,
                               double along) {
-    const double R = demi_form_radius(r, n);
+    const double R = demi_draft_radius(r, n);
     const int32_t first = f->points;
     int i;
     for (i = 0; i < n; i++) {
@@ -13961,47 +13962,48 @@ static int32_t demi_form_ring(demi_form *f, int axis, int n, double r, double u,
         x[axis] = along;
         x[(axis + 1)%3] = u + R*demi_cos(2*DEMI_PI*i/n);
         x[(axis + 2)%3] = v + R*demi_sin(2*DEMI_PI*i/n);
-        demi_form_point(f, x[0], x[1], x[2]);
+        demi_draft_point(f, x[0], x[1], x[2]);
     }
     return first;
 }
 /* Joins two rings: of n points from a, and of n, 2 n, n/2 or one (a point on the axis) from b. */
-static void demi_form_band(demi_form *f, int32_t a, int n, int32_t b, int m) {
+static void demi_draft_band(demi_draft *f, int32_t a, int n, int32_t b, int m) {
     int i;
     if (m < n) { const int32_t c = a; a = b; b = c; i = n; n = m; m = i; }
-    for (i = 0; i < m && n == 1; i++) demi_form_facet(f, a, b + i, b + (i + 1)%m);
+    for (i = 0; i < m && n == 1; i++) demi_draft_facet(f, a, b + i, b + (i + 1)%m);
     for (i = 0; i < n && n > 1; i++) {
         const int32_t p = a + i, q = a + (i + 1)%n;
-        if (m == n) demi_form_quad(f, p, b + i, b + (i + 1)%n, q);
+        if (m == n) demi_draft_quad(f, p, b + i, b + (i + 1)%n, q);
         else {
-            demi_form_facet(f, p, b + 2*i, b + 2*i + 1);
-            demi_form_facet(f, p, b + 2*i + 1, q);
-            demi_form_facet(f, q, b + 2*i + 1, b + (2*i + 2)%m);
+            demi_draft_facet(f, p, b + 2*i, b + 2*i + 1);
+            demi_draft_facet(f, p, b + 2*i + 1, q);
+            demi_draft_facet(f, q, b + 2*i + 1, b + (2*i + 2)%m);
         }
     }
 }
 
 /* --- kinds of walls --- */
 
-static void demi_cylinder_tessellate(const demi_wall *wall, demi_form *f) {
-    const int n = demi_form_sides(f, (double)wall->radius);
+static void demi_cylinder_tessellate(const demi_wall *wall, demi_draft *f) {
+    const int n = demi_draft_sides(f, (double)wall->radius);
     int i;
-    demi_form_ring(f, 2, n, (double)wall->radius, 0, 0, 0);
-    for (i = 0; i < n; i++) demi_form_facet(f, i, (i + 1)%n, 0);
+    demi_draft_ring(f, 2, n, (double)wall->radius, 0, 0, 0);
+    for (i = 0; i < n; i++) demi_draft_facet(f, i, (i + 1)%n, 0);
 }
 /* Adds the next ring of a surface of revolution and joins it to the one before, which begins at
    *at and has *n corners (0: there is none). back: 1: it is the first ring again. */
-static void demi_revolved_ring(demi_form *f, double r, double z, int back, int32_t *at, int *n) {
-    const int sides = r > 0 ? demi_form_sides(f, r) : 1, before = *n;
+static void demi_revolved_ring(demi_draft *f, double r, double z, int back, int32_t *at, int *n) {
+    const int sides = r > 0 ? demi_draft_sides(f, r) : 1, before = *n;
     const int32_t from = *at;
     *n = sides;
-    *at = back ? 0 : r > 0 ? demi_form_ring(f, 2, sides, r, 0, 0, z) : demi_form_point(f, 0, 0, z);
-    if (before) demi_form_band(f, from, before, *at, sides);
+    *at = back ? 0 : r > 0 ? demi_draft_ring(f, 2, sides, r, 0, 0, z)
+        : demi_draft_point(f, 0, 0, z);
+    if (before) demi_draft_band(f, from, before, *at, sides);
 }
 /* The rings of the wall, and more between them: where the radius changes by more than a factor of
    four, so that the number of sides doubles or halves at most, and where facets would be more than
    500 times as long as wide (but at most 1000 of these on a piece). */
-static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
+static void demi_revolved_tessellate(const demi_wall *wall, demi_draft *f) {
     const int last = wall->ring_count - 1;
     /* just below the radius at which circles get twice as many sides */
     const double sides = DEMI_FORM_LEAST;
@@ -14012,7 +14014,7 @@ static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
     for (k = 1; k <= last; k++) {
         const double a = (double)wall->ring_radius[k - 1], b = (double)wall->ring_radius[k];
         const double g = (double)wall->ring_height[k - 1], h = (double)wall->ring_height[k];
-        const double big = DEMI_MAX(a, b), wide = 2*DEMI_PI*big/demi_form_sides(f, big);
+        const double big = DEMI_MAX(a, b), wide = 2*DEMI_PI*big/demi_draft_sides(f, big);
         const int closed = k == last && fabs(b - (double)wall->ring_radius[0]) +
             fabs(h - (double)wall->ring_height[0]) < 1e-9*(double)wall->radius;
         double t = 0, to;
@@ -14032,13 +14034,13 @@ static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
 
 /* A plate with a rectangular or round hole: both faces, with the cell's corners halfway between
    holes, and the wall of the hole. A plate without thickness has one face. */
-static void demi_plate_tessellate(const dem_sieve_desc *s, demi_form *f) {
+static void demi_plate_tessellate(const dem_sieve_desc *s, demi_draft *f) {
     const double bar = (double)s->bar, half = (double)s->thickness/2;
     const double b = (double)s->aperture/2;
     const double a = s->kind == DEM_SIEVE_SLOTS ? (double)s->length/2 : b;
     const int round = s->kind == DEM_SIEVE_ROUND, corners = round && s->staggered ? 6 : 4;
     const double root3 = 1.7320508075688772;
-    const int n = round ? demi_form_sides(f, b) : 4, per = n/corners, layers = half > 0 ? 2 : 1;
+    const int n = round ? demi_draft_sides(f, b) : 4, per = n/corners, layers = half > 0 ? 2 : 1;
     int32_t ring[2], rim[2];
     int i, k, layer;
     for (layer = 0; layer < layers; layer++) {
@@ -14047,52 +14049,52 @@ static void demi_plate_tessellate(const dem_sieve_desc *s, demi_form *f) {
         for (i = 0; i < corners; i++) {         /* of the cell: halfway between holes */
             const double at = DEMI_PI*(2*i + 1)/corners;
             if (corners == 6)
-                demi_form_point(f, (2*b + bar)/root3*demi_cos(at),
+                demi_draft_point(f, (2*b + bar)/root3*demi_cos(at),
                                 (2*b + bar)/root3*demi_sin(at), z);
-            else demi_form_point(f, (i == 0 || i == 3 ? 1 : -1)*(a + bar/2),
+            else demi_draft_point(f, (i == 0 || i == 3 ? 1 : -1)*(a + bar/2),
                                  (i < 2 ? 1 : -1)*(b + bar/2), z);
         }
         ring[layer] = f->points;
-        if (round) demi_form_ring(f, 2, n, b, 0, 0, z);
+        if (round) demi_draft_ring(f, 2, n, b, 0, 0, z);
         for (i = 0; i < 4 && !round; i++)
-            demi_form_point(f, (i == 0 || i == 3 ? 1 : -1)*a, (i < 2 ? 1 : -1)*b, z);
+            demi_draft_point(f, (i == 0 || i == 3 ? 1 : -1)*a, (i < 2 ? 1 : -1)*b, z);
         for (i = 0; i < corners; i++) {
             const int32_t p = rim[layer] + i, q = rim[layer] + (i + 1)%corners;
             const int from = round ? i*per : i, to = (from + per)%n;
             for (k = from; k < from + per && round; k++)
-                demi_form_facet(f, p, ring[layer] + k, ring[layer] + (k + 1)%n);
-            if (round) demi_form_facet(f, p, ring[layer] + to, q);
-            else demi_form_quad(f, p, ring[layer] + i, ring[layer] + to, q);
+                demi_draft_facet(f, p, ring[layer] + k, ring[layer] + (k + 1)%n);
+            if (round) demi_draft_facet(f, p, ring[layer] + to, q);
+            else demi_draft_quad(f, p, ring[layer] + i, ring[layer] + to, q);
         }
     }
-    if (layers == 2) demi_form_band(f, ring[0], n, ring[1], n);
+    if (layers == 2) demi_draft_band(f, ring[0], n, ring[1], n);
     f->step[0] = demi_v((dem_real)(2*a + bar), 0, 0);
     f->step[1] = corners == 6 ? demi_v((dem_real)(b + bar/2), (dem_real)((2*b + bar)*root3/2), 0)
         : demi_v(0, (dem_real)(2*b + bar), 0);
 }
 /* One wire, bar or strip between endless slots along x (axis 0) or y (axis 1): a prism of n
    corners, or the four of a strip, of two if it has no thickness. */
-static void demi_row_tessellate(const dem_sieve_desc *s, int axis, demi_form *f) {
+static void demi_row_tessellate(const dem_sieve_desc *s, int axis, demi_draft *f) {
     const int wires = demi_sieve_wires(s), flat = !wires && !(s->thickness > 0);
     const double pitch = (double)(s->aperture + s->bar), q = (double)s->bar/2;
     const double z = !wires ? 0 : axis ? (double)s->lift/2 : -(double)s->lift/2;
-    const int n = wires ? demi_form_sides(f, q) : flat ? 2 : 4;
+    const int n = wires ? demi_draft_sides(f, q) : flat ? 2 : 4;
     int32_t end[2];
     int i, k;
     for (k = 0; k < 2; k++) {
         const double along = (k - 0.5)*pitch;
         end[k] = f->points;
-        if (wires) demi_form_ring(f, axis, n, q, axis ? z : pitch/2, axis ? pitch/2 : z, along);
+        if (wires) demi_draft_ring(f, axis, n, q, axis ? z : pitch/2, axis ? pitch/2 : z, along);
         for (i = 0; i < n && !wires; i++)
-            demi_form_point(f, along, pitch/2 + (i == 0 || i == 3 ? q : -q),
+            demi_draft_point(f, along, pitch/2 + (i == 0 || i == 3 ? q : -q),
                             (i < 2 ? 1 : -1)*(double)s->thickness/2);
     }
-    if (flat) demi_form_quad(f, end[0], end[0] + 1, end[1] + 1, end[1]);
-    else demi_form_band(f, end[0], n, end[1], n);
+    if (flat) demi_draft_quad(f, end[0], end[0] + 1, end[1] + 1, end[1]);
+    else demi_draft_band(f, end[0], n, end[1], n);
     f->step[0] = demi_v((dem_real)pitch, 0, 0);
     f->step[1] = demi_v(0, (dem_real)pitch, 0);
 }
-static void demi_sieve_tessellate(const demi_wall *wall, demi_form *f) {
+static void demi_sieve_tessellate(const demi_wall *wall, demi_draft *f) {
     const dem_sieve_desc *s = &wall->sieve;
     const int endless = s->kind == DEM_SIEVE_SLOTS && !(s->length > 0);
     if (!demi_sieve_wires(s) && !endless) { demi_plate_tessellate(s, f); return; }
@@ -14107,7 +14109,7 @@ static int demi_wall_tessellates(const demi_wall *wall) {
         !(wall->sieve.kind && wall->sieve.radius > 0);
 }
 /* Tessellates a wall with chords of at most `chord`, m. The caller frees *f. */
-static void demi_form_begin(demi_form *f, dem_world *w, const demi_wall *wall, double chord) {
+static void demi_draft_begin(demi_draft *f, dem_world *w, const demi_wall *wall, double chord) {
     memset(f, 0, sizeof *f);
     f->w = w;
     f->per = wall->kind == DEMI_WALL_CYLINDER ? 2 : 3;
@@ -14466,7 +14468,7 @@ static double demi_wall_pace(const dem_world *w, int i) {
 /* Makes the tessellation of a wall for bodies of one scale. They are in the order of walls, then of
    scales. Returns 0 if memory ran out. */
 static int demi_tessellation_make(dem_world *w, int wall, int scale) {
-    demi_form f;
+    demi_draft f;
     demi_wall *s;
     int ok;
     if (!DEMI_GROW(w, w->surfaces, (size_t)w->surface_count + 1)) return 0;
@@ -14474,7 +14476,7 @@ static int demi_tessellation_make(dem_world *w, int wall, int scale) {
          (s[-1].lead > wall || (s[-1].lead == wall && s[-1].scale > 1 + scale)); s--) s[0] = s[-1];
     demi_surface_begin(w, wall, s);
     s->scale = 1 + scale;
-    demi_form_begin(&f, w, &w->walls[wall], 5e-4*ldexp(1, scale - 41));
+    demi_draft_begin(&f, w, &w->walls[wall], 5e-4*ldexp(1, scale - 41));
     s->kind = f.per == 3 ? DEMI_WALL_MESH : DEMI_WALL_PROFILE;
     memcpy(s->step, f.step, sizeof s->step);
     s->vertex_count = f.points;
@@ -14484,7 +14486,7 @@ static int demi_tessellation_make(dem_world *w, int wall, int scale) {
     ok = !f.failed && s->vertices && s->corners;
     if (ok) memcpy(s->vertices, f.x, (size_t)f.points*3*sizeof(dem_real));
     if (ok) memcpy(s->corners, f.corner, (size_t)(f.facets*f.per)*sizeof(int32_t));
-    demi_form_free(&f);
+    demi_draft_free(&f);
     ok = ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
     s->open = w->walls[wall].open;
     return ok;
@@ -19789,15 +19791,15 @@ static double demi_solid_near(const demi_solid *s, demi_d3 x, demi_d3 *q) {
     }
     return least < 1e299 ? least : inside;
 }
-/* Sets s to polyhedron p scaled so that the ellipsoid `egg` at `at` is the unit sphere about the
+/* Sets s to polyhedron p scaled so that the ellipsoid at `at` is the unit sphere about the
    origin. */
-static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec3 at,
+static void demi_solid_measure(const demi_part *p, const demi_part *ellipsoid, dem_vec3 at,
                                demi_solid *s) {
-    const demi_d3 axes = demi_d3_of(egg->axes);
+    const demi_d3 axes = demi_d3_of(ellipsoid->axes);
     double R[9], back[9];
     int i, k;
     demi_solid_of(p, at, s);
-    demi_rotation_of(egg->q, R);
+    demi_rotation_of(ellipsoid->q, R);
     for (i = 0; i < 9; i++) back[i] = R[i%3*3 + i/3];
     for (i = -1; i < s->corners; i++) {
         demi_d3 *x = i < 0 ? &s->centre : &s->corner[i];
@@ -22624,61 +22626,60 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
 
 /* ---------------------------------------------------------------------------------------------
    >>ellipsoids
-   Contact points of ellipsoids with ellipsoids and spheres ("eggs" in names), a tile of pairs at a
-   time. >>kept asks for pairs in the order of its list. A tile is filled with the next pairs whose
-   bounding spheres overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all
-   of them in vectors. With the parameter of the step before as its start, one iteration is nearly
-   always enough; the other pairs are solved individually. Owns nothing; the tile belongs to the
-   caller.
+   Contact points of ellipsoids with ellipsoids and spheres, a tile of pairs at a time. >>kept asks
+   for pairs in the order of its list. A tile is filled with the next pairs whose bounding spheres
+   overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all of them in
+   vectors. With the parameter of the step before as its start, one iteration is nearly always
+   enough; the other pairs are solved individually. Owns nothing; the tile belongs to the caller.
    --------------------------------------------------------------------------------------------- */
 
 /* True if a body of this shape is an ellipsoid or a sphere (null). */
-DEM_INLINE int demi_egg_is(const demi_shape *shape) {
+DEM_INLINE int demi_ellipsoid_is(const demi_shape *shape) {
     return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
 }
 /* True if the scene has ellipsoids. */
-static int demi_eggs_exist(const dem_world *w) {
+static int demi_ellipsoids_exist(const dem_world *w) {
     int k, any = 0;
     for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].kind == DEMI_ELLIPSOID;
     return any;
 }
 /* Pairs of a tile, a multiple of DEMI_LANES; how many entries ahead bodies and contacts are
    prefetched. */
-enum { DEMI_EGGS = 16, DEMI_EGGS_AHEAD = 6 };
+enum { DEMI_MEETS = 16, DEMI_MEETS_AHEAD = 6 };
 /* What one iteration has found: no contact, a contact, or that more iterations are needed. */
-enum { DEMI_EGGS_APART, DEMI_EGGS_FOUND, DEMI_EGGS_OPEN };
+enum { DEMI_MEETS_APART, DEMI_MEETS_FOUND, DEMI_MEETS_OPEN };
 /* A tile of pairs, as a structure of arrays. Sides: 0 body a, 1 body b. */
-typedef struct demi_egg_tile {
-    dem_real q[2][4][DEMI_EGGS], axes[2][3][DEMI_EGGS];        /* orientations; half axes, m */
-    double r[3][DEMI_EGGS];        /* m, from a to b */
-    double equal[2][DEMI_EGGS];    /* m, radii of the spheres of equal volume */
-    double most[DEMI_EGGS];        /* W0^2 beyond which the two are apart */
-    double range[DEMI_EGGS], d[DEMI_EGGS];     /* m: of the law; between the centres */
-    double l[DEMI_EGGS];           /* lambda of the step before, 0: unknown; then the start value */
-    /* results. found: DEMI_EGGS_..., a double, so that all columns have one width; the others as in
-       demi_meet and demi_eggs_keep */
-    double found[DEMI_EGGS];
-    double to[DEMI_EGGS], f[DEMI_EGGS], w0[DEMI_EGGS], both[DEMI_EGGS];
-    double overlap[DEMI_EGGS], slope[DEMI_EGGS], r_eff[DEMI_EGGS], deep[DEMI_EGGS];
-    double s[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
-    int32_t entry[DEMI_EGGS], from[DEMI_EGGS]; /* of the pruned list; old contact, -1: none */
+typedef struct demi_ellipsoid_tile {
+    dem_real q[2][4][DEMI_MEETS], axes[2][3][DEMI_MEETS];        /* orientations; half axes, m */
+    double r[3][DEMI_MEETS];       /* m, from a to b */
+    double equal[2][DEMI_MEETS];   /* m, radii of the spheres of equal volume */
+    double most[DEMI_MEETS];       /* W0^2 beyond which the two are apart */
+    double range[DEMI_MEETS], d[DEMI_MEETS];     /* m: of the law; between the centres */
+    double l[DEMI_MEETS];          /* lambda of the step before, 0: unknown; then the start value */
+    /* results. found: DEMI_MEETS_..., a double, so that all columns have one width; the others as
+       in demi_meet and demi_ellipsoids_keep */
+    double found[DEMI_MEETS];
+    double to[DEMI_MEETS], f[DEMI_MEETS], w0[DEMI_MEETS], both[DEMI_MEETS];
+    double overlap[DEMI_MEETS], slope[DEMI_MEETS], r_eff[DEMI_MEETS], deep[DEMI_MEETS];
+    double s[3][DEMI_MEETS], normal[3][DEMI_MEETS], point[3][DEMI_MEETS];
+    int32_t entry[DEMI_MEETS], from[DEMI_MEETS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
     const demi_kept *old, *after;  /* first old contact of body a or of a later body; the one after
                                       the last match */
-} demi_egg_tile;
+} demi_ellipsoid_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC push_options
 #pragma GCC optimize("no-trapping-math")
 #endif
-DEM_INLINE void demi_eggs_put(double (*rows)[DEMI_EGGS], int q, demi_d3 a) {
+DEM_INLINE void demi_ellipsoids_put(double (*rows)[DEMI_MEETS], int q, demi_d3 a) {
     rows[0][q] = a.x; rows[1][q] = a.y; rows[2][q] = a.z;
 }
-DEM_INLINE demi_d3 demi_eggs_at(double (*rows)[DEMI_EGGS], int q) {
+DEM_INLINE demi_d3 demi_ellipsoids_at(double (*rows)[DEMI_MEETS], int q) {
     return demi_d(rows[0][q], rows[1][q], rows[2][q]);
 }
 /* The matrix of a side of row q. */
-DEM_INLINE demi_sym demi_egg_matrix(const demi_egg_tile *t, int side, int q) {
+DEM_INLINE demi_sym demi_ellipsoid_row(const demi_ellipsoid_tile *t, int side, int q) {
     return demi_ellipsoid_matrix(
         dem_quat_make(t->q[side][0][q], t->q[side][1][q], t->q[side][2][q], t->q[side][3][q]),
         demi_v(t->axes[side][0][q], t->axes[side][1][q], t->axes[side][2][q]));
@@ -22686,7 +22687,7 @@ DEM_INLINE demi_sym demi_egg_matrix(const demi_egg_tile *t, int side, int q) {
 /* Stores the contact point of row q. At that point both scaled distances are W0, so the support
    heights are h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|); both: their sum. The overlap is the
    conservative one. */
-DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet m) {
+DEM_INLINE void demi_ellipsoids_keep(demi_ellipsoid_tile *DEMI_RESTRICT t, int q, demi_meet m) {
     const double w0 = sqrt(m.f), per = 1/demi_d3_length(m.s), least = m.l < 0.5 ? m.l : 1 - m.l;
     const double radii = t->equal[0][q] + t->equal[1][q];
     t->to[q] = m.l;
@@ -22697,16 +22698,16 @@ DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet 
     t->slope[q] = radii/t->both[q];
     t->r_eff[q] = t->equal[0][q]*t->equal[1][q]/radii;
     t->deep[q] = (1 - w0)/least;
-    demi_eggs_put(t->s, q, m.s);
-    demi_eggs_put(t->normal, q, demi_d3_scale(m.s, per));
-    demi_eggs_put(t->point, q, demi_d3_scale(m.a, 1 - m.l));
+    demi_ellipsoids_put(t->s, q, m.s);
+    demi_ellipsoids_put(t->normal, q, demi_d3_scale(m.s, per));
+    demi_ellipsoids_put(t->point, q, demi_d3_scale(m.a, 1 - m.l));
 }
 /* One iteration for row q. It ends as the first of demi_meet_solve does. Without a start value, the
    plane normal to the line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights
    along that line, so if the plane separates the two, they are apart. */
-DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
-    const demi_sym A = demi_egg_matrix(t, 0, q), B = demi_egg_matrix(t, 1, q);
-    const demi_d3 r = demi_eggs_at(t->r, q);
+DEM_INLINE void demi_ellipsoids_solve_one(demi_ellipsoid_tile *DEMI_RESTRICT t, int q) {
+    const demi_sym A = demi_ellipsoid_row(t, 0, q), B = demi_ellipsoid_row(t, 1, q);
+    const demi_d3 r = demi_ellipsoids_at(t->r, q);
     const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
     const int fresh = !(t->l[q] > 0);
     const int apart = fresh & (demi_d3_square(r) - (ha + hb) > t->range[q]*t->d[q]);
@@ -22720,19 +22721,20 @@ DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
     out = m.f > t->most[q];
     still = !out & (m.fa + m.fb > 0) & (fabs(m.u) < DEMI_MEET_NEAR);
     if (still) m = n;
-    demi_eggs_keep(t, q, m);
-    t->found[q] = apart ? (double)DEMI_EGGS_APART
-        : still | out ? (double)DEMI_EGGS_FOUND : (double)DEMI_EGGS_OPEN;
+    demi_ellipsoids_keep(t, q, m);
+    t->found[q] = apart ? (double)DEMI_MEETS_APART
+        : still | out ? (double)DEMI_MEETS_FOUND : (double)DEMI_MEETS_OPEN;
 }
-DEMI_CLONES static void demi_eggs_solve(demi_egg_tile *DEMI_RESTRICT t, int full) {
-    DEMI_ROWS(full) demi_eggs_solve_one(t, q); DEMI_ROWS_END
+DEMI_CLONES static void demi_ellipsoids_solve(demi_ellipsoid_tile *DEMI_RESTRICT t, int full) {
+    DEMI_ROWS(full) demi_ellipsoids_solve_one(t, q); DEMI_ROWS_END
 }
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
 
 /* Puts one side into row k of a tile. Returns its least half axis, m. */
-DEM_INLINE dem_real demi_egg_put(demi_egg_tile *t, int k, int side, dem_quat q, dem_vec3 axes) {
+DEM_INLINE dem_real demi_ellipsoid_put(demi_ellipsoid_tile *t, int k, int side, dem_quat q,
+                                       dem_vec3 axes) {
     t->q[side][0][k] = q.w; t->q[side][1][k] = q.x;
     t->q[side][2][k] = q.y; t->q[side][3][k] = q.z;
     t->axes[side][0][k] = axes.x; t->axes[side][1][k] = axes.y; t->axes[side][2][k] = axes.z;
@@ -22740,10 +22742,10 @@ DEM_INLINE dem_real demi_egg_put(demi_egg_tile *t, int k, int side, dem_quat q, 
 }
 /* Puts all but the two bodies into row k. gap: m, from a to b; lambda: of the step before, 0:
    unknown; range: m, of the law; thin: sum of the least half axes, m. */
-DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lambda, double range,
-                              dem_real thin) {
+DEM_INLINE void demi_ellipsoids_row(demi_ellipsoid_tile *t, int k, dem_vec3 gap, double lambda,
+                                    double range, dem_real thin) {
     const double most = range > 0 ? 1 + range/(double)thin : 1;
-    demi_eggs_put(t->r, k, demi_d3_of(gap));
+    demi_ellipsoids_put(t->r, k, demi_d3_of(gap));
     if (!(demi_dot(gap, gap) > 0)) t->r[2][k] = 1e-9*(double)thin;
     t->l[k] = lambda;
     t->most[k] = most*most;
@@ -22751,17 +22753,19 @@ DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lamb
     t->d[k] = range > 0 ? demi_d3_length(demi_d3_of(gap)) : 0;
 }
 /* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
-DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
-                                      int body, const demi_shape *shape) {
+DEM_INLINE dem_real demi_ellipsoid_body_put(const dem_world *w, demi_ellipsoid_tile *t, int k,
+                                            int side, int body, const demi_shape *shape) {
     const dem_real radius = demi_radius(w, body), scale = shape ? radius/shape->radius : 0;
     t->equal[side][k] = (double)(shape ? shape->equal*scale : radius);
     if (!shape)
-        return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
-    return demi_egg_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
-                        demi_scale(shape->axes, scale));
+        return demi_ellipsoid_put(t, k, side, dem_quat_make(1, 0, 0, 0),
+                                  demi_v(radius, radius, radius));
+    return demi_ellipsoid_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
+                              demi_scale(shape->axes, scale));
 }
 /* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
-DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *last, int a, int b) {
+DEM_INLINE const demi_kept *demi_ellipsoids_old(demi_ellipsoid_tile *t, const demi_kept *last,
+                                                int a, int b) {
     const demi_kept *o;
     while (t->old < last && t->old->a < a) t->after = ++t->old;
     for (o = t->after; o < last && o->a == a && o->b != b;) o++;
@@ -22773,12 +22777,13 @@ DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *las
 }
 /* Fills a tile with pairs of ellipsoids among entries p .. end - 1 of the pruned list of work group
    d, and does one iteration for all of them. */
-static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_egg_tile *t) {
+static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
+                                             demi_ellipsoid_tile *t) {
     const int base = d*w->near.stride;
     const demi_kept *now = demi_kept_of(w, d), *last = now + w->domains[d].kept, *o;
     int k;
     t->count = t->next = 0;
-    for (; p < end && t->count < DEMI_EGGS; p++) {
+    for (; p < end && t->count < DEMI_MEETS; p++) {
         const int a = w->near.a[base + p], b = w->near.b[base + p];
         const size_t at = (size_t)(base + p);
         const dem_vec3 r = demi_near_level(w, at, demi_near_bodies_way(w, at));
@@ -22786,55 +22791,55 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
         const dem_real far = radii + (dem_real)w->margin.reach;
         const demi_shape *one, *other;
         dem_real thin;
-        if (p + DEMI_EGGS_AHEAD < end) {
-            const int next = w->near.b[base + p + DEMI_EGGS_AHEAD];
+        if (p + DEMI_MEETS_AHEAD < end) {
+            const int next = w->near.b[base + p + DEMI_MEETS_AHEAD];
             DEMI_FETCH(w->bodies.pos + 4*next);
             DEMI_FETCH(w->bodies.orient + 4*next);
         }
         if (!(demi_dot(r, r) < far*far)) continue;
         one = demi_shape_of(w, a);
         other = demi_shape_of(w, b);
-        if ((!one && !other) || !demi_egg_is(one) || !demi_egg_is(other)) continue;
+        if ((!one && !other) || !demi_ellipsoid_is(one) || !demi_ellipsoid_is(other)) continue;
         k = t->count++;
-        o = demi_eggs_old(t, last, a, b);
-        if (t->after + DEMI_EGGS_AHEAD < last) DEMI_FETCH(t->after + DEMI_EGGS_AHEAD);
+        o = demi_ellipsoids_old(t, last, a, b);
+        if (t->after + DEMI_MEETS_AHEAD < last) DEMI_FETCH(t->after + DEMI_MEETS_AHEAD);
         t->entry[k] = p;
         t->from[k] = o ? (int32_t)(o - now) : -1;
-        thin = demi_egg_body_put(w, t, k, 0, a, one);
-        thin += demi_egg_body_put(w, t, k, 1, b, other);
-        demi_eggs_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);
+        thin = demi_ellipsoid_body_put(w, t, k, 0, a, one);
+        thin += demi_ellipsoid_body_put(w, t, k, 1, b, other);
+        demi_ellipsoids_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);
     }
     t->end = p;
     for (k = t->count; k%DEMI_LANES; k++) {     /* copies of two spheres pad the last group */
-        demi_egg_put(t, k, 0, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
-        demi_egg_put(t, k, 1, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
+        demi_ellipsoid_put(t, k, 0, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
+        demi_ellipsoid_put(t, k, 1, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
         t->equal[0][k] = t->equal[1][k] = 1;
-        demi_eggs_row(t, k, demi_v(1, 0, 0), 0, 0, 1);
+        demi_ellipsoids_row(t, k, demi_v(1, 0, 0), 0, 0, 1);
     }
-    if (t->count) demi_eggs_solve(t, k);
+    if (t->count) demi_ellipsoids_solve(t, k);
 }
 /* Returns 1 if the pair of row k touches or is within the range of the law; its contact point is
    then complete. If the two are apart, their gap is taken as d (1 - 1/W0), the distance of the two
    surface points that coincide when both are scaled by W0. It is never less than the true distance,
    which the candidate lists use. */
-static int demi_eggs_meet(demi_egg_tile *t, int k) {
+static int demi_ellipsoids_meet(demi_ellipsoid_tile *t, int k) {
     demi_meet m;
-    if (!(t->found[k] > (double)DEMI_EGGS_APART)) return 0;
-    if (t->found[k] > (double)DEMI_EGGS_FOUND) {
+    if (!(t->found[k] > (double)DEMI_MEETS_APART)) return 0;
+    if (t->found[k] > (double)DEMI_MEETS_FOUND) {
         m.l = t->l[k];
-        demi_meet_solve(demi_egg_matrix(t, 0, k), demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k),
-                        t->most[k], DEMI_MEET_NEAR, &m);
-        demi_eggs_keep(t, k, m);
+        demi_meet_solve(demi_ellipsoid_row(t, 0, k), demi_ellipsoid_row(t, 1, k),
+                        demi_ellipsoids_at(t->r, k), t->most[k], DEMI_MEET_NEAR, &m);
+        demi_ellipsoids_keep(t, k, m);
     }
     return t->f[k] < 1 || (t->range[k] > 0 && t->d[k]*(1 - 1/t->w0[k]) < t->range[k]);
 }
 /* Returns the overlap of [RUB15] 3.2 for row k, m. Evaluates the function once more: with K^-1 QB s
    from before the last step of l, the error would be of the order of this step. */
-static double demi_eggs_chord(demi_egg_tile *t, int k) {
-    const demi_sym A = demi_egg_matrix(t, 0, k);
+static double demi_ellipsoids_chord(demi_ellipsoid_tile *t, int k) {
+    const demi_sym A = demi_ellipsoid_row(t, 0, k);
     demi_meet m;
     m.l = t->to[k];
-    demi_meet_at(A, demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k), &m);
+    demi_meet_at(A, demi_ellipsoid_row(t, 1, k), demi_ellipsoids_at(t->r, k), &m);
     return demi_meet_chord(&m, A);
 }
 
@@ -23435,10 +23440,10 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
 }
 /* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
    be a sphere. p, q: the two; not read if the overlap is the conservative one. */
-DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const demi_part *p,
-                              const demi_part *q, demi_kept *c) {
+DEM_INLINE void demi_ellipsoids_set(const dem_world *w, demi_ellipsoid_tile *t, int k,
+                                    const demi_part *p, const demi_part *q, demi_kept *c) {
     c->lambda = t->to[k];
-    c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
+    c->normal = demi_d3_real(demi_ellipsoids_at(t->normal, k));
     c->deep = (dem_real)t->deep[k];
     c->overlap = (dem_real)t->overlap[k];
     c->r_eff = (dem_real)t->r_eff[k];
@@ -23449,23 +23454,23 @@ DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const
         c->r_eff = (dem_real)(ra*rb/(ra + rb));
         /* across a gap there is no chord */
         c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD && t->w0[k] < 1
-            ? demi_eggs_chord(t, k) : (1 - t->w0[k])*both);
+            ? demi_ellipsoids_chord(t, k) : (1 - t->w0[k])*both);
     }
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
                                  demi_spots *spots) {
-    demi_egg_tile t;
-    dem_real thin = demi_egg_put(&t, 0, 0, p->q, demi_part_axes(p));
+    demi_ellipsoid_tile t;
+    dem_real thin = demi_ellipsoid_put(&t, 0, 0, p->q, demi_part_axes(p));
     (void)spots;
-    thin += demi_egg_put(&t, 0, 1, q->q, demi_part_axes(q));
+    thin += demi_ellipsoid_put(&t, 0, 1, q->q, demi_part_axes(q));
     t.equal[0][0] = demi_part_equal(p);
     t.equal[1][0] = demi_part_equal(q);
-    demi_eggs_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
-    demi_eggs_solve_one(&t, 0);
-    if (!demi_eggs_meet(&t, 0)) return 0;
-    demi_eggs_set(w, &t, 0, p, q, c);
-    c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
+    demi_ellipsoids_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
+    demi_ellipsoids_solve_one(&t, 0);
+    if (!demi_ellipsoids_meet(&t, 0)) return 0;
+    demi_ellipsoids_set(w, &t, 0, p, q, c);
+    c->arm_a = demi_add(p->centre, demi_d3_real(demi_ellipsoids_at(t.point, 0)));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
@@ -23475,8 +23480,8 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
    is l (1 - W0), where l includes `edge`, or is measured along the normal. The arm leads to the
    deepest point, as for a sphere. The gradient of l (1 - W0) passes through the point of the wall,
    at W0 times the arm. */
-static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real left, dem_real edge,
-                             demi_kept *c) {
+static void demi_ellipsoid_overlap(const dem_world *w, const demi_part *p, dem_real left,
+                                   dem_real edge, demi_kept *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
     c->overlap = left*(h + edge);
     c->deep = c->overlap/h;
@@ -23523,27 +23528,27 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
 }
 /* An ellipsoid and a polyhedron, as with walls: at the point that the ellipsoid touches first when
    it is scaled, by W0. */
-static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                 dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_ELLIPSOID;
-    const demi_part *egg = first ? p : q;
+    const demi_part *ellipsoid = first ? p : q;
     dem_vec3 at, n;
     demi_d3 near;
     double W0;
     demi_solid s;
-    demi_solid_measure(first ? q : p, egg, first ? gap : demi_scale(gap, -1), &s);
+    demi_solid_measure(first ? q : p, ellipsoid, first ? gap : demi_scale(gap, -1), &s);
     W0 = demi_solid_near(&s, demi_d(0, 0, 0), &near);
-    if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(egg)))
+    if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(ellipsoid)))
         return 0;
     at = demi_d3_real(near);
-    n = demi_v(at.x/egg->axes.x, at.y/egg->axes.y, at.z/egg->axes.z);
-    at = demi_v(at.x*egg->axes.x, at.y*egg->axes.y, at.z*egg->axes.z);
+    n = demi_v(at.x/ellipsoid->axes.x, at.y/ellipsoid->axes.y, at.z/ellipsoid->axes.z);
+    at = demi_v(at.x*ellipsoid->axes.x, at.y*ellipsoid->axes.y, at.z*ellipsoid->axes.z);
     if (W0 > 1 && !((double)demi_length(at)*(1 - 1/W0) <
                     (double)demi_range(w, p->radius + q->radius))) return 0;
-    c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
-    demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
+    c->normal = demi_unit(dem_quat_rotate(ellipsoid->q, W0 < 0 ? demi_scale(n, -1) : n));
+    demi_ellipsoid_overlap(w, ellipsoid, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
-    c->arm_a = dem_quat_rotate(egg->q, at);
+    c->arm_a = dem_quat_rotate(ellipsoid->q, at);
     demi_kept_odd(c)->outset = demi_v(0, 0, 0);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
@@ -23555,7 +23560,7 @@ static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const 
                                   dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
     const int ball = p->kind == DEMI_BALL || q->kind == DEMI_BALL;
     (void)lambda; (void)spots;
-    if (!(ball ? demi_solid_ball_touch : demi_solid_egg_touch)(w, p, q, gap, c)) return 0;
+    if (!(ball ? demi_solid_ball_touch : demi_solid_ellipsoid_touch)(w, p, q, gap, c)) return 0;
     c->arm_a = demi_add(c->arm_a, p->centre);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
@@ -23692,8 +23697,8 @@ DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, con
 /* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
 static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                    const demi_touching *place, demi_kept *c) {
-    demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
-                     c);
+    demi_ellipsoid_overlap(w, p, place->overlap,
+                           demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0), c);
     c->arm_a = demi_add(p->centre, c->arm_a);
 }
 /* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
@@ -24258,11 +24263,11 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
 }
 /* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch: row k of a
    tile. It is the only contact of its pair, so all its weights are 1. */
-static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int send) {
+static void demi_kept_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, int k, int send) {
     const int at = d*w->near.stride + t->entry[k];
     demi_part p, q;
     demi_kept *c;
-    if (!demi_eggs_meet(t, k)) return;
+    if (!demi_ellipsoids_meet(t, k)) return;
     c = demi_kept_new(w, d);
     if (!c) return;
     demi_kept_ahead(c, 2, 1);
@@ -24276,8 +24281,8 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);
     }
-    demi_eggs_set(w, t, k, &p, &q, c);
-    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
+    demi_ellipsoids_set(w, t, k, &p, &q, c);
+    c->arm_a = demi_d3_real(demi_ellipsoids_at(t->point, k));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a,
                         demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at)));
@@ -24305,10 +24310,11 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, con
 }
 /* Finds the contacts of entry p of the pruned list of work group d: of ellipsoids from tile t,
    which is filled again, before `end`, when it is used up; those of others individually. */
-DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send, demi_egg_tile *t,
-                                const demi_kept *old, int olds) {
-    if (p >= t->end) demi_eggs_find(w, d, p, end, t);
-    if (t->next < t->count && t->entry[t->next] == p) demi_kept_eggs(w, d, t, t->next++, send);
+DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send,
+                                demi_ellipsoid_tile *t, const demi_kept *old, int olds) {
+    if (p >= t->end) demi_ellipsoids_find(w, d, p, end, t);
+    if (t->next < t->count && t->entry[t->next] == p)
+        demi_kept_ellipsoids(w, d, t, t->next++, send);
     else demi_kept_pair(w, d, d*w->near.stride + p, send, old, olds);
 }
 
@@ -24335,7 +24341,8 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
 /* True if contact point `place` of part p, whose centre is at `at`, overlaps or is within the range
    of the law. Contact points of other shapes are found only within that range. For an ellipsoid the
    gap is the distance from its surface to the point, measured on the ray from its centre. For a
-   grain of a wall it is that of two ellipsoids (demi_eggs_meet), measured to the grain's centre. */
+   grain of a wall it is that of two ellipsoids (demi_ellipsoids_meet), measured to the grain's
+   centre. */
 static int demi_place_near(const dem_world *w, const demi_wall *wall, const demi_part *p,
                            dem_vec3 at, const demi_touching *place) {
     const dem_real scale = 1 - place->overlap;
@@ -24597,9 +24604,9 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
-    const int eggs = demi_eggs_exist(w);
-    demi_egg_tile own, cross;
-    own.end = cross.end = eggs ? 0 : INT_MAX;
+    const int ellipsoids = demi_ellipsoids_exist(w);
+    demi_ellipsoid_tile own, cross;
+    own.end = cross.end = ellipsoids ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
     own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;
@@ -25994,7 +26001,7 @@ static void demi_movers_lay(dem_world *w, int d) {
 typedef struct demi_rod {
     int32_t a, b, rows;            /* solver bodies; number of rows, 0: not in force */
     int32_t next[2];               /* next joint of a, and of b, see demi_solver.joined; -1: none */
-    int32_t knot, ends[2];         /* nodes of the joint, and of a and b; -1: prescribed motion */
+    int32_t node, ends[2];         /* nodes of the joint, and of a and b; -1: prescribed motion */
     int32_t stuck;                 /* sign of the torque of a motor at its limit; 0: below it */
     dem_vec3 arm[2];               /* m, lever arms from the centres of a and b */
     dem_vec3 along[3];             /* unit axes of the spin rows: two across the hinge, its own */
@@ -26004,7 +26011,7 @@ typedef struct demi_rod {
     dem_real most, torque;         /* N m s: limit of a motor of speed; impulse of one of torque */
 } demi_rod;
 /* Node of the linear system of all joints: a movable body with joints, or a joint in force. */
-typedef struct demi_knot {
+typedef struct demi_joint_node {
     int32_t mover, rod;            /* solver body or joint; the other is -1 */
     int32_t rank, order;           /* its position in the order of elimination; order of entry i
                                       of the array: which node is eliminated at position i */
@@ -26021,11 +26028,11 @@ typedef struct demi_knot {
     double spare;                  /* J: the part of bank that displacements may spend */
     double wide, closed;           /* m: largest gap; largest one that impulses may close */
     double x[6];                   /* right-hand side, then solution */
-    dem_quat turned;               /* of a body: orientation a step ahead, see demi_knots_ahead */
-    /* used by demi_knots_order: neighbours; queue of nodes with a degree of this index; number of
-       neighbours left; last node that marked it; see demi_knot_ready */
+    dem_quat turned;               /* of a body: orientation a step ahead, see demi_nodes_ahead */
+    /* used by demi_nodes_order: neighbours; queue of nodes with a degree of this index; number of
+       neighbours left; last node that marked it; see demi_node_ready */
     int32_t links, waiting, degree, mark, paid;
-} demi_knot;
+} demi_joint_node;
 /* Entry of a linked list of nodes; next -1: the last. */
 typedef struct demi_link_of { int32_t to, next; } demi_link_of;
 /* DEMI_GIVE: softness of joints over the inverse effective mass. DEMI_GIVE_LOOPS: the same in
@@ -26588,13 +26595,13 @@ static int demi_joints_check(const demi_reader *r) {
    >>joints-solved
    Direct solution of the joint constraints of >>joints: sparse block LDL' factorisation. This part
    has the elimination order, the blocks and their factor, sweeps, the energy guard and the results
-   (forces, power). A rod is a joint in one step. A knot is a node of the system: a body or a joint.
-   Owns rods, knots, links, rows and blocks of w->solver; writes w->joints, and displaces bodies to
+   (forces, power). A rod is a joint in one step. A node is a node of the system: a body or a joint.
+   Owns rods, nodes, links, rows and blocks of w->solver; writes w->joints, and displaces bodies to
    close gaps. Tests: tests/impulse/test_joints.c, tests/hard/hard_joints.c.
    --------------------------------------------------------------------------------------------- */
 
 /* Adds node `to` at the front of a linked list. Returns 0 if memory ran out. */
-static int demi_knot_link(dem_world *w, int32_t *list, int to) {
+static int demi_node_link(dem_world *w, int32_t *list, int to) {
     demi_solver *s = &w->solver;
     if (!DEMI_GROW(w, s->links, (size_t)s->link_count + 1)) return 0;
     s->links[s->link_count].to = to;
@@ -26603,86 +26610,86 @@ static int demi_knot_link(dem_world *w, int32_t *list, int to) {
     return 1;
 }
 /* Adds the node of a body (rod -1) or of a joint (mover -1), and returns its index. */
-static int demi_knot_add(demi_solver *s, int mover, int rod) {
-    demi_knot *k = s->knots + s->knot_count;
+static int demi_node_add(demi_solver *s, int mover, int rod) {
+    demi_joint_node *k = s->nodes + s->node_count;
     memset(k, 0, sizeof *k);
     k->mover = mover;
     k->rod = rod;
     k->links = k->waiting = k->rank = k->mark = -1;
-    k->group = s->knot_count;
-    return s->knot_count++;
+    k->group = s->node_count;
+    return s->node_count++;
 }
 /* Returns the root of a node's group of connected nodes (union-find with path halving). */
-static int demi_knot_group(demi_solver *s, int knot) {
-    while (s->knots[knot].group != knot)
-        knot = s->knots[knot].group = s->knots[s->knots[knot].group].group;
-    return knot;
+static int demi_node_group(demi_solver *s, int node) {
+    while (s->nodes[node].group != node)
+        node = s->nodes[node].group = s->nodes[s->nodes[node].group].group;
+    return node;
 }
 /* True if a node may be eliminated. A body always may. A joint may once one of its bodies was
    eliminated in its favour (`paid`; a body pays for one joint), or both were: only then does its
    pivot contain the compliance of a body. */
-static int demi_knot_ready(const demi_solver *s, const demi_knot *k) {
+static int demi_node_ready(const demi_solver *s, const demi_joint_node *k) {
     int e, gone = 1;
     if (k->rod < 0 || k->paid) return 1;
     for (e = 0; e < 2; e++) {
         const int end = s->rods[k->rod].ends[e];
-        gone &= end < 0 || s->knots[end].rank >= 0;
+        gone &= end < 0 || s->nodes[end].rank >= 0;
     }
     return gone;
 }
 /* Symbolic elimination of one node: its remaining neighbours become its column of the factor, and
    neighbours of each other (fill-in). Returns 0 if memory ran out. */
-static int demi_knot_eliminate(dem_world *w, int knot, int rank) {
+static int demi_node_eliminate(dem_world *w, int node, int rank) {
     demi_solver *s = &w->solver;
     const int first = s->row_count;
-    int i, j, e, paid = s->knots[knot].rod >= 0;
-    s->knots[knot].rank = rank;
-    s->knots[rank].order = knot;
-    s->knots[knot].first = first;
-    for (e = s->knots[knot].links; e >= 0; e = s->links[e].next) {
+    int i, j, e, paid = s->nodes[node].rod >= 0;
+    s->nodes[node].rank = rank;
+    s->nodes[rank].order = node;
+    s->nodes[node].first = first;
+    for (e = s->nodes[node].links; e >= 0; e = s->links[e].next) {
         const int to = s->links[e].to;
-        if (s->knots[to].rank >= 0) continue;
+        if (s->nodes[to].rank >= 0) continue;
         if (!DEMI_GROW(w, s->rows, (size_t)s->row_count + 1)) return 0;
         s->rows[s->row_count++] = to;
-        if (paid || s->knots[to].rod < 0 || s->knots[to].paid ||
-            (s->rods[s->knots[to].rod].ends[0] != knot &&
-             s->rods[s->knots[to].rod].ends[1] != knot)) continue;
-        s->knots[to].paid = paid = 1;
+        if (paid || s->nodes[to].rod < 0 || s->nodes[to].paid ||
+            (s->rods[s->nodes[to].rod].ends[0] != node &&
+             s->rods[s->nodes[to].rod].ends[1] != node)) continue;
+        s->nodes[to].paid = paid = 1;
     }
-    s->knots[knot].count = s->row_count - first;
+    s->nodes[node].count = s->row_count - first;
     for (i = first; i < s->row_count; i++) {
         const int a = s->rows[i];
-        for (e = s->knots[a].links; e >= 0; e = s->links[e].next)
-            s->knots[s->links[e].to].mark = a;
-        s->knots[a].degree--;
+        for (e = s->nodes[a].links; e >= 0; e = s->links[e].next)
+            s->nodes[s->links[e].to].mark = a;
+        s->nodes[a].degree--;
         for (j = first; j < s->row_count; j++) {
             const int b = s->rows[j];
-            if (b == a || s->knots[b].mark == a) continue;
-            if (!demi_knot_link(w, &s->knots[a].links, b)) return 0;
-            s->knots[a].degree++;
+            if (b == a || s->nodes[b].mark == a) continue;
+            if (!demi_node_link(w, &s->nodes[a].links, b)) return 0;
+            s->nodes[a].degree++;
         }
-        if (demi_knot_ready(s, s->knots + a) &&
-            !demi_knot_link(w, &s->knots[s->knots[a].degree].waiting, a)) return 0;
+        if (demi_node_ready(s, s->nodes + a) &&
+            !demi_node_link(w, &s->nodes[s->nodes[a].degree].waiting, a)) return 0;
     }
     return 1;
 }
 /* Minimum-degree ordering: eliminates the node with the fewest neighbours first. A tree is
    eliminated from its leaves to its root without fill-in; loops cause little. Returns 0 if memory
    ran out. */
-static int demi_knots_order(dem_world *w) {
+static int demi_nodes_order(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, rank = 0, d;
-    for (i = s->knot_count - 1; i >= 0; i--)
-        if (s->knots[i].rod < 0 &&
-            !demi_knot_link(w, &s->knots[s->knots[i].degree].waiting, i)) return 0;
-    for (d = 0; d < s->knot_count; ) {
-        demi_knot *k = s->knots + d;
+    for (i = s->node_count - 1; i >= 0; i--)
+        if (s->nodes[i].rod < 0 &&
+            !demi_node_link(w, &s->nodes[s->nodes[i].degree].waiting, i)) return 0;
+    for (d = 0; d < s->node_count; ) {
+        demi_joint_node *k = s->nodes + d;
         const int e = k->waiting;
         if (e < 0) { d++; continue; }
         k->waiting = s->links[e].next;
         i = s->links[e].to;
-        if (s->knots[i].rank >= 0 || s->knots[i].degree != d) continue;
-        if (!demi_knot_eliminate(w, i, rank++)) return 0;
+        if (s->nodes[i].rank >= 0 || s->nodes[i].degree != d) continue;
+        if (!demi_node_eliminate(w, i, rank++)) return 0;
         d = 0;
     }
     return 1;
@@ -26699,11 +26706,11 @@ static int demi_joints_room(dem_world *w) {
             n++;
         }
     w->joint_count = n;
-    s->knot_count = s->link_count = s->row_count = 0;
+    s->node_count = s->link_count = s->row_count = 0;
     if (!n) return 1;
     if (!DEMI_GROW(w, s->rods, (size_t)n) || !DEMI_GROW(w, s->joined, bodies) ||
-        !DEMI_GROW(w, s->knot_of, bodies) || !DEMI_GROW(w, s->knots, 3*(size_t)n)) return 0;
-    for (i = 0; i < w->bodies.count; i++) s->joined[i] = s->knot_of[i] = -1;
+        !DEMI_GROW(w, s->node_of, bodies) || !DEMI_GROW(w, s->nodes, 3*(size_t)n)) return 0;
+    for (i = 0; i < w->bodies.count; i++) s->joined[i] = s->node_of[i] = -1;
     for (i = 0; i < n; i++) {
         const dem_joint_desc *d = &w->joints[i].desc;
         demi_rod *r = s->rods + i;
@@ -26718,30 +26725,30 @@ static int demi_joints_room(dem_world *w) {
             r->next[e] = s->joined[body[e]];
             s->joined[body[e]] = i;
             if (!(w->bodies.inv_mass[body[e]] > 0)) continue;
-            if (s->knot_of[body[e]] < 0) s->knot_of[body[e]] = demi_knot_add(s, body[e], -1);
-            r->ends[e] = s->knot_of[body[e]];
+            if (s->node_of[body[e]] < 0) s->node_of[body[e]] = demi_node_add(s, body[e], -1);
+            r->ends[e] = s->node_of[body[e]];
             r->rows = demi_joint_rows(d->kind) + (d->motor == DEM_MOTOR_SPEED);
         }
         if (!r->rows) continue;
-        r->knot = demi_knot_add(s, -1, i);
+        r->node = demi_node_add(s, -1, i);
         for (e = 0; e < 2; e++) {
             const int end = r->ends[e];
             if (end < 0) continue;
-            s->knots[demi_knot_group(s, r->knot)].group = demi_knot_group(s, end);
-            if (!demi_knot_link(w, &s->knots[end].links, r->knot) ||
-                !demi_knot_link(w, &s->knots[r->knot].links, end)) return 0;
-            s->knots[end].degree++;
-            s->knots[r->knot].degree++;
+            s->nodes[demi_node_group(s, r->node)].group = demi_node_group(s, end);
+            if (!demi_node_link(w, &s->nodes[end].links, r->node) ||
+                !demi_node_link(w, &s->nodes[r->node].links, end)) return 0;
+            s->nodes[end].degree++;
+            s->nodes[r->node].degree++;
         }
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *group = s->knots + demi_knot_group(s, i);
-        const demi_rod *r = s->rods + s->knots[i].rod;
-        group->excess += s->knots[i].rod < 0 ? -1 : 1;
-        group->grounded |= s->knots[i].rod >= 0 && (r->ends[0] < 0 || r->ends[1] < 0);
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *group = s->nodes + demi_node_group(s, i);
+        const demi_rod *r = s->rods + s->nodes[i].rod;
+        group->excess += s->nodes[i].rod < 0 ? -1 : 1;
+        group->grounded |= s->nodes[i].rod >= 0 && (r->ends[0] < 0 || r->ends[1] < 0);
     }
-    return demi_knots_order(w) &&
-        DEMI_GROW(w, s->blocks, 36*((size_t)s->knot_count + (size_t)s->row_count));
+    return demi_nodes_order(w) &&
+        DEMI_GROW(w, s->blocks, 36*((size_t)s->node_count + (size_t)s->row_count));
 }
 
 /* --- the system of one step --- */
@@ -26750,7 +26757,7 @@ static int demi_joints_room(dem_world *w) {
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
 /* Returns the time, s, between the contact detections of this step and the next. A body that has
    made no step since it was set is at the beginning of the step in the first, not in the middle. */
-static dem_real demi_knot_ahead(const dem_world *w, int body) {
+static dem_real demi_node_ahead(const dem_world *w, int body) {
     return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
 }
 /* Returns the velocity, m/s, of point `at` in the frame of a wall that has this pose. */
@@ -26772,10 +26779,10 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + joint;
     const int body = end ? r->b : r->a;
-    const dem_real by = ahead ? demi_knot_ahead(w, body) : 0;
+    const dem_real by = ahead ? demi_node_ahead(w, body) : 0;
     demi_rod_end o;
     if (body < w->bodies.count) {
-        const dem_quat q = ahead && r->ends[end] >= 0 ? s->knots[r->ends[end]].turned
+        const dem_quat q = ahead && r->ends[end] >= 0 ? s->nodes[r->ends[end]].turned
             : demi_quat_at(w->bodies.orient + 4*body);
         o.arm = dem_quat_rotate(q, j->arm[end]);
         o.axis = dem_quat_rotate(q, j->axis[end]);
@@ -26848,7 +26855,7 @@ static void demi_rod_jacobian(const dem_world *w, const demi_rod *r, int end, in
     }
 }
 /* Computes the 6 x 6 matrix of mass, kg, and inertia, kg m2, of a body; 1 if it cannot rotate. */
-static void demi_knot_mass(const dem_world *w, int body, double *m) {
+static void demi_node_mass(const dem_world *w, int body, double *m) {
     const double inv = (double)w->bodies.inv_inertia[body];
     int i, k;
     memset(m, 0, 36*sizeof *m);
@@ -26915,43 +26922,43 @@ static void demi_block_times(double *y, const double *a, const double *x, int tr
         for (k = 0; k < 6; k++) y[i] -= a[transposed ? 6*k + i : 6*i + k]*x[k];
 }
 /* Returns the block of two linked nodes: column of the one eliminated first, rows of the other. */
-static double *demi_knots_block(const demi_solver *s, int a, int b) {
-    const int early = s->knots[a].rank < s->knots[b].rank ? a : b, late = early == a ? b : a;
-    int e = s->knots[early].first;
+static double *demi_nodes_block(const demi_solver *s, int a, int b) {
+    const int early = s->nodes[a].rank < s->nodes[b].rank ? a : b, late = early == a ? b : a;
+    int e = s->nodes[early].first;
     while (s->rows[e] != late) e++;
-    return s->blocks + 36*((size_t)s->knot_count + (size_t)e);
+    return s->blocks + 36*((size_t)s->node_count + (size_t)e);
 }
 /* Assembles [M -J'; -J -give] and factors it: M of bodies, J rows of joints, give their softness.
    Rows that are not in force are -1 on the diagonal. */
-static void demi_knots_factor(dem_world *w) {
+static void demi_nodes_factor(dem_world *w) {
     demi_solver *s = &w->solver;
     double row[6];
     int i, k, e, l, rank;
-    memset(s->blocks, 0, 36*((size_t)s->knot_count + (size_t)s->row_count)*sizeof *s->blocks);
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_rod *r = s->rods + s->knots[i].rod;
-        if (s->knots[i].rod < 0) demi_knot_mass(w, s->knots[i].mover, s->blocks + 36*(size_t)i);
-        for (k = 0; k < 6 && s->knots[i].rod >= 0; k++) {
+    memset(s->blocks, 0, 36*((size_t)s->node_count + (size_t)s->row_count)*sizeof *s->blocks);
+    for (i = 0; i < s->node_count; i++) {
+        const demi_rod *r = s->rods + s->nodes[i].rod;
+        if (s->nodes[i].rod < 0) demi_node_mass(w, s->nodes[i].mover, s->blocks + 36*(size_t)i);
+        for (k = 0; k < 6 && s->nodes[i].rod >= 0; k++) {
             const int on = demi_rod_row(w, r, k);
             s->blocks[36*(size_t)i + 7*(size_t)k] = on ? -(double)r->give[k] : -1;
             for (e = 0; e < 2; e++) {
                 const int body = r->ends[e];
                 double *block;
                 if (!on || body < 0) continue;
-                block = demi_knots_block(s, i, body);
+                block = demi_nodes_block(s, i, body);
                 demi_rod_jacobian(w, r, e, k, row);
                 for (l = 0; l < 6; l++)
-                    block[s->knots[body].rank < s->knots[i].rank ? 6*k + l : 6*l + k] -= row[l];
+                    block[s->nodes[body].rank < s->nodes[i].rank ? 6*k + l : 6*l + k] -= row[l];
             }
         }
     }
-    for (rank = 0; rank < s->knot_count; rank++) {
-        const int v = s->knots[rank].order, first = s->knots[v].first;
-        const int end = first + s->knots[v].count;
-        const double *columns = s->blocks + 36*(size_t)s->knot_count;
+    for (rank = 0; rank < s->node_count; rank++) {
+        const int v = s->nodes[rank].order, first = s->nodes[v].first;
+        const int end = first + s->nodes[v].count;
+        const double *columns = s->blocks + 36*(size_t)s->node_count;
         double *pivot = s->blocks + 36*(size_t)v;
-        if (s->knots[v].rod < 0) demi_block_invert(pivot, 1, 0);
-        else demi_block_invert(pivot, -1, s->rods[s->knots[v].rod].give);
+        if (s->nodes[v].rod < 0) demi_block_invert(pivot, 1, 0);
+        else demi_block_invert(pivot, -1, s->rods[s->nodes[v].rod].give);
         for (k = first; k < end; k++) {
             const int a = s->rows[k];
             double by[36];
@@ -26960,29 +26967,29 @@ static void demi_knots_factor(dem_world *w) {
             for (l = 0; l < 36; l++) by[l] = -by[l];
             demi_block_less(s->blocks + 36*(size_t)a, by, columns + 36*(size_t)k);
             for (l = first; l < end; l++)
-                if (s->knots[s->rows[l]].rank < s->knots[a].rank)
-                    demi_block_less(demi_knots_block(s, a, s->rows[l]), by, columns + 36*(size_t)l);
+                if (s->nodes[s->rows[l]].rank < s->nodes[a].rank)
+                    demi_block_less(demi_nodes_block(s, a, s->rows[l]), by, columns + 36*(size_t)l);
         }
     }
 }
 /* Solves the system: x of all nodes is the right-hand side before, and the solution after. */
-static void demi_knots_solve(demi_solver *s) {
-    const double *columns = s->blocks + 36*(size_t)s->knot_count;
+static void demi_nodes_solve(demi_solver *s) {
+    const double *columns = s->blocks + 36*(size_t)s->node_count;
     int rank, e;
-    for (rank = 0; rank < s->knot_count; rank++) {
-        const demi_knot *k = s->knots + s->knots[rank].order;
+    for (rank = 0; rank < s->node_count; rank++) {
+        const demi_joint_node *k = s->nodes + s->nodes[rank].order;
         double y[6] = {0, 0, 0, 0, 0, 0};
-        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);       /* - D^-1 x */
+        demi_block_times(y, s->blocks + 36*(k - s->nodes), k->x, 0);       /* - D^-1 x */
         for (e = 0; e < 6; e++) y[e] = -y[e];
         for (e = k->first; e < k->first + k->count; e++)
-            demi_block_times(s->knots[s->rows[e]].x, columns + 36*(size_t)e, y, 0);
+            demi_block_times(s->nodes[s->rows[e]].x, columns + 36*(size_t)e, y, 0);
     }
     while (rank-- > 0) {
-        demi_knot *k = s->knots + s->knots[rank].order;
+        demi_joint_node *k = s->nodes + s->nodes[rank].order;
         double y[6] = {0, 0, 0, 0, 0, 0};
         for (e = k->first; e < k->first + k->count; e++)
-            demi_block_times(k->x, columns + 36*(size_t)e, s->knots[s->rows[e]].x, 1);
-        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);
+            demi_block_times(k->x, columns + 36*(size_t)e, s->nodes[s->rows[e]].x, 1);
+        demi_block_times(y, s->blocks + 36*(k - s->nodes), k->x, 0);
         for (e = 0; e < 6; e++) k->x[e] = -y[e];
     }
 }
@@ -26996,7 +27003,7 @@ static void demi_rod_lay(dem_world *w, int i) {
     const demi_rod_end x = demi_rod_end_of(w, i, 0, 0), y = demi_rod_end_of(w, i, 1, 0);
     const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
     const int b = r->b < w->bodies.count;
-    const demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+    const demi_joint_node *group = s->nodes + (r->rows ? demi_node_group(s, r->node) : 0);
     const dem_real give = group->excess + !group->grounded > 0 ? DEMI_GIVE_LOOPS : DEMI_GIVE;
     int k, e;
     /* both arms end in the middle of the gap, which conserves angular momentum */
@@ -27084,25 +27091,25 @@ static void demi_joints_lay(dem_world *w) {
         }
         if (w->stage.forces_valid) j->state.turned += (double)(s->dt*r->before[5]);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        const int body = s->knots[i].mover;
-        demi_knot *group = s->knots + demi_knot_group(s, i);
+    for (i = 0; i < s->node_count; i++) {
+        const int body = s->nodes[i].mover;
+        demi_joint_node *group = s->nodes + demi_node_group(s, i);
         if (body < 0) {
-            demi_joint *j = w->joints + s->knots[i].rod;
-            const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
+            demi_joint *j = w->joints + s->nodes[i].rod;
+            const dem_real size = demi_rod_size(w, s->rods + s->nodes[i].rod), few = size/10;
             const dem_real gap = j->state.gap + j->state.tilt*size;
             group->bank += j->bank;
             group->wide = DEMI_MAX(group->wide, (double)gap);
-            group->closed = DEMI_MAX(group->closed, demi_rod_closed(w, s->rods + s->knots[i].rod));
+            group->closed = DEMI_MAX(group->closed, demi_rod_closed(w, s->rods + s->nodes[i].rod));
             j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
             group->open |= (j->apart > few)*2;
         } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
             demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
             (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
     }
-    for (i = 0; i < s->knot_count; i++) {
-        s->knots[i].guarded = s->knots[i].wide > s->knots[i].closed;
-        s->knots[i].open |= s->knots[i].guarded;
+    for (i = 0; i < s->node_count; i++) {
+        s->nodes[i].guarded = s->nodes[i].wide > s->nodes[i].closed;
+        s->nodes[i].open |= s->nodes[i].guarded;
     }
     s->factored = 0;
 }
@@ -27116,16 +27123,16 @@ static void demi_joints_warm(dem_world *w) {
     }
 }
 /* Predicts the orientations of joined bodies at the next detection, by the integrator's scheme. */
-static void demi_knots_ahead(dem_world *w) {
+static void demi_nodes_ahead(dem_world *w) {
     const demi_solver *s = &w->solver;
     int i;
-    for (i = 0; i < s->knot_count; i++) {
-        const int body = s->knots[i].mover;
+    for (i = 0; i < s->node_count; i++) {
+        const int body = s->nodes[i].mover;
         dem_quat q;
         dem_vec3 turn;
         dem_real dt;
         if (body < 0) continue;
-        dt = demi_knot_ahead(w, body);
+        dt = demi_node_ahead(w, body);
         q = demi_quat_at(w->bodies.orient + 4*body);
         turn = demi_at(s->movers[body].w);
         if (w->bodies.shaped && w->bodies.shape[body]) {
@@ -27134,11 +27141,11 @@ static void demi_knots_ahead(dem_world *w) {
             const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
             demi_rotation_rows[w->desc.rotation].fly(&q, L, I, inv, dt);
         } else q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(turn, dt)), q));
-        s->knots[i].turned = q;
+        s->nodes[i].turned = q;
     }
 }
 /* Returns the angular acceleration of a body that rotates with the spin without torque, rad/s2. */
-static dem_vec3 demi_knot_tumbles(const dem_world *w, int body, dem_vec3 spin) {
+static dem_vec3 demi_node_tumbles(const dem_world *w, int body, dem_vec3 spin) {
     const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
     const dem_vec3 I = demi_moments_of(w, body), x = dem_quat_unrotate(q, spin);
     const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
@@ -27168,7 +27175,7 @@ static void demi_rod_bends(const dem_world *w, int joint, dem_real *bend) {
             dem_vec3 spin = demi_at(w->solver.movers[body].w), tumbles = demi_v(0, 0, 0);
             if (body < w->bodies.count) {
                 if (!after) spin = demi_at(w->bodies.spin + 4*body);
-                tumbles = demi_knot_tumbles(w, body, spin);
+                tumbles = demi_node_tumbles(w, body, spin);
                 point = demi_add(point, demi_scale(demi_add(demi_cross(tumbles, r->arm[e]),
                     demi_cross(spin, demi_cross(spin, r->arm[e]))), half));
             } else point = demi_add(point, demi_scale(demi_rod_driven(w, joint), half));
@@ -27195,9 +27202,9 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
     memset(lacks, 0, 6*sizeof *lacks);
     if (!r->rows) return 0;
     demi_rod_velocity(s, r, u);
-    if (s->knots[s->knots[r->knot].group].guarded && !shifts) {
+    if (s->nodes[s->nodes[r->node].group].guarded && !shifts) {
         dem_real bend[6];
-        if (s->knots[s->knots[r->knot].group].guarded > 1)
+        if (s->nodes[s->nodes[r->node].group].guarded > 1)
             for (k = 0; k < 5; k++) lacks[k] = -r->before[k] - u[k];
         else {
             demi_rod_bends(w, i, bend);
@@ -27208,7 +27215,7 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
         const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
         const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
         const dem_vec3 tilt = demi_cross(y.axis, x.axis);       /* of a against b */
-        const dem_real dt = DEMI_MAX(demi_knot_ahead(w, r->a), demi_knot_ahead(w, r->b));
+        const dem_real dt = DEMI_MAX(demi_node_ahead(w, r->a), demi_node_ahead(w, r->b));
         const dem_real part = DEMI_MIN(1, size/(10*demi_length(off) + DEMI_TINY))/dt;
         const dem_real turn = DEMI_MIN(1, DEM_R(0.1)/(demi_length(tilt) + DEMI_TINY))/dt;
         demi_put(lacks, demi_scale(off, -part));
@@ -27229,23 +27236,23 @@ static dem_real demi_joints_solve(dem_world *w, int shifts) {
     demi_solver *s = &w->solver;
     dem_real worst = 0, left, lacks[6];
     int i, k;
-    if (!s->factored) demi_knots_factor(w);
+    if (!s->factored) demi_nodes_factor(w);
     s->factored = 1;
-    demi_knots_ahead(w);
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *knot = s->knots + i;
-        memset(knot->x, 0, sizeof knot->x);
-        if (knot->rod < 0) continue;
-        left = demi_rod_lacks(w, knot->rod, shifts, lacks);
+    demi_nodes_ahead(w);
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *node = s->nodes + i;
+        memset(node->x, 0, sizeof node->x);
+        if (node->rod < 0) continue;
+        left = demi_rod_lacks(w, node->rod, shifts, lacks);
         worst = DEMI_MAX(worst, left);
-        for (k = 0; k < 6; k++) knot->x[k] = -(double)lacks[k];
+        for (k = 0; k < 6; k++) node->x[k] = -(double)lacks[k];
     }
-    demi_knots_solve(s);
+    demi_nodes_solve(s);
     for (i = 0; i < w->joint_count && !shifts; i++) {
         demi_rod *r = s->rods + i;
         dem_real by[6];
         if (!r->rows) continue;
-        for (k = 0; k < 6; k++) r->given[k] += by[k] = (dem_real)s->knots[r->knot].x[k];
+        for (k = 0; k < 6; k++) r->given[k] += by[k] = (dem_real)s->nodes[r->node].x[k];
         demi_rod_apply(w, r, by, demi_rod_twist(r, by));
     }
     return worst;
@@ -27282,9 +27289,9 @@ static dem_real demi_joints_sweep(dem_world *w) {
     const dem_real enough = DEMI_JOINED*w->effects.radius_min/s->dt;
     dem_real worst, left, far2 = 0, digit;
     int rounds = 0, i;
-    if (!s->knot_count) return 0;
-    for (i = 0; i < s->knot_count; i++) {
-        const dem_real *x = w->bodies.pos + 4*DEMI_MAX(s->knots[i].mover, 0);
+    if (!s->node_count) return 0;
+    for (i = 0; i < s->node_count; i++) {
+        const dem_real *x = w->bodies.pos + 4*DEMI_MAX(s->nodes[i].mover, 0);
         far2 = DEMI_MAX(far2, demi_dot(demi_at(x), demi_at(x)));
     }
     digit = 8*(DEMI_SINGLE ? DEM_R(FLT_EPSILON) : DEM_R(DBL_EPSILON))/s->dt;
@@ -27315,18 +27322,18 @@ static double demi_rod_work(const dem_world *w, const demi_rod *r) {
 static int demi_joints_guard(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, n = 0;
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < s->node_count; i++) s->nodes[i].work = 0;
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        if (r->rows) s->knots[demi_knot_group(s, r->knot)].work += demi_rod_work(w, r);
+        if (r->rows) s->nodes[demi_node_group(s, r->node)].work += demi_rod_work(w, r);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *k = s->knots + i;
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *k = s->nodes + i;
         if (k->group != i || k->guarded > 1 || !(k->work > DEMI_MAX(k->bank, 0))) continue;
         k->guarded++;
         n++;
     }
-    for (i = 0; i < s->knot_count && n; i++) s->knots[i].group = demi_knot_group(s, i);
+    for (i = 0; i < s->node_count && n; i++) s->nodes[i].group = demi_node_group(s, i);
     return n;
 }
 /* Closes the gaps of guarded groups by displacements, as far as the energy that they may spend
@@ -27338,18 +27345,18 @@ static double demi_joints_shift(dem_world *w) {
     demi_solver *s = &w->solver;
     double farthest = 0;
     int i, any = 0;
-    for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
+    for (i = 0; i < s->node_count; i++) any |= s->nodes[i].guarded && s->nodes[i].open;
     if (!any) return 0;
     demi_joints_solve(w, 1);
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_knot *k = s->knots + i;
+    for (i = 0; i < s->node_count; i++) s->nodes[i].work = 0;
+    for (i = 0; i < s->node_count; i++) {
+        const demi_joint_node *k = s->nodes + i;
         const demi_d3 g = demi_d3_of(w->desc.gravity), x = demi_d3_at(k->x);
         const double fall = demi_d3_dot(g, x) + digit*demi_d3_length(g)*demi_d3_length(x);
-        if (k->mover >= 0) s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
+        if (k->mover >= 0) s->nodes[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_knot *k = s->knots + i, *group = s->knots + k->group;
+    for (i = 0; i < s->node_count; i++) {
+        const demi_joint_node *k = s->nodes + i, *group = s->nodes + k->group;
         const double paid = group->open > 1 || !(group->work > group->spare) ? 1
             : group->spare/group->work;
         const dem_real by = (dem_real)paid*s->dt;
@@ -27379,13 +27386,13 @@ static double demi_joints_shift(dem_world *w) {
 static void demi_joints_bank(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, k;
-    for (i = 0; i < s->knot_count; i++) {
-        s->knots[i].spare = s->knots[i].bank;
-        s->knots[i].bank = s->knots[i].work = 0;
+    for (i = 0; i < s->node_count; i++) {
+        s->nodes[i].spare = s->nodes[i].bank;
+        s->nodes[i].bank = s->nodes[i].work = 0;
     }
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+        demi_joint_node *group = s->nodes + (r->rows ? demi_node_group(s, r->node) : 0);
         dem_real u[6];
         w->joints[i].bank -= w->joints[i].held;
         if (!r->rows) continue;
@@ -27395,13 +27402,13 @@ static void demi_joints_bank(dem_world *w) {
     }
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        const demi_knot *group = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
+        const demi_joint_node *group = r->rows ? s->nodes + demi_node_group(s, r->node) : 0;
         if (!group) w->joints[i].bank = 0;
         else if (group->bank > DEMI_BANKED*group->kinetic)
             w->joints[i].bank *= DEMI_BANKED*group->kinetic/group->bank;
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *group = s->knots + i;
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *group = s->nodes + i;
         const double most = DEMI_BANKED*group->kinetic;
         group->bank = DEMI_MIN(group->bank, most);
         group->spare = DEMI_MAX(0, DEMI_MIN(group->spare, group->bank) -
@@ -27420,7 +27427,7 @@ static void demi_joints_tell(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
     int i, k;
-    demi_knots_ahead(w);
+    demi_nodes_ahead(w);
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
         demi_joint *j = &w->joints[i];
@@ -27590,7 +27597,7 @@ static void demi_colours_all(dem_world *w, demi_task task) {
         const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
         s->first = s->begins[k];
         s->last = s->begins[k + 1];
-        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->crew.now, runs, 0, task);
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->threads.now, runs, 0, task);
         s->run += runs;
     }
 }
@@ -27600,7 +27607,7 @@ static void demi_runs_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
     s->first = s->run = 0;
     s->last = s->count;
-    demi_parallel(w, w->crew.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
+    demi_parallel(w, w->threads.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
     s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
 }
 /* Returns the sums over all runs of the last sweep. They are added in the order of runs, so the
@@ -28619,11 +28626,11 @@ enum { DEMI_FILL_TRIES = 2000, DEMI_FILL_OUTSIDE = 200000 };
 #define DEMI_PACK_MOST 3e8
 
 /* A node of the tree. */
-typedef struct demi_node {
+typedef struct demi_crowd_node {
     int32_t child;                 /* the first of its two halves; 0: a leaf */
     int32_t first, count;          /* of a leaf: its first sphere, linked by `next`; their number */
     dem_real largest;              /* m, largest radius in it */
-} demi_node;
+} demi_crowd_node;
 /* A sphere in the tree. body: index of its body; -1: not a body yet. next: -1: the last. */
 typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; } demi_sphere;
 /* An occupancy tree. Its spheres and nodes are w->crowd and w->crowd_nodes. */
@@ -28664,7 +28671,7 @@ static demi_nook demi_crowd_root(const demi_crowd *c) {
     return n;
 }
 /* Links sphere i into a leaf, as its first. */
-static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
+static void demi_leaf_put(demi_crowd_node *leaf, demi_sphere *all, int32_t i) {
     all[i].next = leaf->first;
     leaf->first = i;
     leaf->count++;
@@ -28673,14 +28680,14 @@ static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
 /* Splits a leaf into two halves. Returns 0 if memory runs out; the leaf is then unchanged. */
 static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
     demi_sphere *all = w->crowd;
-    demi_node *nodes;
+    demi_crowd_node *nodes;
     int32_t i, next;
     int k;
     if (!DEMI_GROW(w, w->crowd_nodes, (size_t)c->nodes + 2)) return 0;
     nodes = w->crowd_nodes;
     nodes[at->node].child = c->nodes;
     for (k = 0; k < 2; k++) {
-        demi_node *half = nodes + c->nodes++;
+        demi_crowd_node *half = nodes + c->nodes++;
         half->child = half->count = 0;
         half->first = -1;
         half->largest = 0;
@@ -28697,7 +28704,7 @@ static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
 static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radius, int body) {
     demi_nook at = demi_crowd_root(c);
     demi_sphere *s;
-    demi_node *node;
+    demi_crowd_node *node;
     int depth = 0;
     if (!DEMI_GROW(w, w->crowd, (size_t)c->count + 1)) return 0;
     s = w->crowd + c->count;
@@ -28740,7 +28747,7 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
     const demi_sphere *all = w->crowd;
-    const demi_node *nodes = w->crowd_nodes;
+    const demi_crowd_node *nodes = w->crowd_nodes;
     const dem_vec3 at = demi_place_of(&c->p, centre);
     demi_nook stack[DEMI_CROWD_DEPTH + 2];
     double x[3];
@@ -28750,7 +28757,7 @@ static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 cen
     stack[top++] = demi_crowd_root(c);
     while (top) {
         const demi_nook n = stack[--top];
-        const demi_node *node = nodes + n.node;
+        const demi_crowd_node *node = nodes + n.node;
         const double cut = (double)(radius + node->largest);
         if (demi_nook_far2(c, &n, x) >= cut*cut) continue;
         if (node->child) {                      /* visits the half that contains it first */
@@ -28854,7 +28861,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
                             int material, demi_periods p) {
     dem_vec3 mid;
     double half[3];
-    demi_node *root;
+    demi_crowd_node *root;
     int i, k;
     c->p = p;
     c->material = material;
@@ -31777,7 +31784,7 @@ static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
+    demi_parallel(w, w->threads.now, runs, 0, demi_some_ahead);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
@@ -31793,7 +31800,7 @@ static void demi_ahead(dem_world *w) {
 static void demi_ahead_back(dem_world *w) {
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, 0, demi_some_back);
+    demi_parallel(w, w->threads.now, runs, 0, demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 
@@ -33989,7 +33996,7 @@ static int demi_forces(dem_world *w) {
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
-    if (w->crew.now > 1) demi_domains_weigh(w);
+    if (w->threads.now > 1) demi_domains_weigh(w);
     for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
         const dem_vec3 axis = w->walls[i].motion.axis;
@@ -34572,11 +34579,11 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     if (looks && result == DEM_OK) result = demi_look(h);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
-        demi_crew_begin(h);
+        demi_threads_begin(h);
         if (!h->stage.moved) result = demi_step_ready(h);
         if (result == DEM_OK) {
             result = demi_step_once(h);
-            demi_crew_end(h);
+            demi_threads_end(h);
             DEMI_PHASE(h, result, ended)
         }
         demi_called(h, was);
@@ -34918,8 +34925,8 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     /* until there are bodies, by which demi_levels_choose decides */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
-    w->crew.now = w->desc.threads;              /* until the first step */
-    w->crew.fixed = DEMI_CREW_FIXED;
+    w->threads.now = w->desc.threads;              /* until the first step */
+    w->threads.fixed = DEMI_THREADS_FIXED;
     demi_bodies_begin(w);
     w->bodies.orienting = desc->orientations != 0;
     w->bodies.backward = demi_integrator_of(w)->backward;
@@ -39839,7 +39846,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->bodies.backward = w->bodies.backward;
     t->bodies.booked = w->bodies.booked;
     t->events.desc = w->events.desc;
-    t->crew = w->crew;
+    t->threads = w->threads;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);
@@ -43105,8 +43112,8 @@ static void demi_report(const dem_world *world, FILE *out) {
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
-    if (w->crew.best && w->crew.best < c.threads)
-        demi_words(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
+    if (w->threads.best && w->threads.best < c.threads)
+        demi_words(few, sizeof few, " (%d in use: more were not faster)", w->threads.best);
     demi_print(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR, DEM_VERSION_PATCH,
             DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", few, c.domains,

@@ -75,7 +75,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->bodies.backward = w->bodies.backward;
     t->bodies.booked = w->bodies.booked;
     t->events.desc = w->events.desc;
-    t->crew = w->crew;
+    t->threads = w->threads;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);

@@ -131,7 +131,7 @@ static void demi_colours_all(dem_world *w, demi_task task) {
         const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
         s->first = s->begins[k];
         s->last = s->begins[k + 1];
-        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->crew.now, runs, 0, task);
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->threads.now, runs, 0, task);
         s->run += runs;
     }
 }
@@ -141,7 +141,7 @@ static void demi_runs_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
     s->first = s->run = 0;
     s->last = s->count;
-    demi_parallel(w, w->crew.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
+    demi_parallel(w, w->threads.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
     s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
 }
 /* Returns the sums over all runs of the last sweep. They are added in the order of runs, so the
