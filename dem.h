@@ -621,6 +621,7 @@
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
      [RUB15]   Rubio-Largo, Lind, Maza & Hidalgo, Comput. Part. Mech. 2 (2015) 127: granular gas of
                ellipsoids on GPUs
+     [SIL10]   Silcowitz, Niebe & Erleben, Visual Comput. 26 (2010) 893: conjugate sweeps
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
      [SPI24]   del Valle et al., Comput. Phys. Commun. 297 (2024) 109077: SPIRAL
      [STE96]   Stewart & Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673: rigid bodies by steps
@@ -4491,8 +4492,7 @@ typedef struct demi_near {
 enum { DEMI_M_EFF = DEMI_COEFS,
       DEMI_TILE_COLUMNS,                        /* those that stages read; the others: */
       DEMI_CN_ROOT = DEMI_TILE_COLUMNS,         /* of clusters: see demi_coefficients_rooted */
-      DEMI_CT_ROOT,
-      DEMI_PAIR_COLUMNS };
+      DEMI_CT_ROOT, DEMI_PAIR_COLUMNS };
 /* A species: spheres that are equal in everything that coefficients depend on. For up to
    DEMI_SPECIES species a table has a row of coefficients for every two of them. With more (radii
    drawn at random), every pair of the pruned list stores its own coefficients. */
@@ -10346,8 +10346,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (w->bodies.orienting)
         demi_quat_put(w->bodies.orient + 4*i,
                       demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)
-                                                               : q,
-                                                            shape->frame) : q));
+                                                               : q, shape->frame) : q));
     demi_body_start(w, i, v, spin, before);
     demi_scene_changed(w);
     return DEM_OK;
@@ -18673,25 +18672,28 @@ DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
    done, in list order. The order of every sum is thus independent of the number of threads.
    --------------------------------------------------------------------------------------------- */
 
-/* Fills in c->who for pair q. */
+/* Fills in `who` for a law that has desc.law_who set, for bodies a and b; b < 0: wall -1 - b, of
+   which the grains have the radius rb. arm: m, from a's centre to the contact point. */
+static void demi_who_fill(const dem_world *w, int a, int b, dem_real ra, dem_real rb, dem_vec3 arm,
+                          dem_real *rates, dem_contact_who *who) {
+    const demi_periods periods = demi_periods_of(w);
+    who->a = dem_body_id_get(w, a);
+    who->radius_a = ra;
+    who->mass_a = w->bodies.mass[a];
+    who->radius_b = rb;
+    if (b >= 0) who->b = dem_body_id_get(w, b);
+    if (b >= 0) who->mass_b = w->bodies.mass[b];
+    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), arm));
+    who->time = w->clock.time;
+    demi_who_reals(w, a, DEMI_MAX(b, -1), b < 0 ? -1 - b : 0, rates, who);
+}
+/* The same for pair q. */
 static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
                                      dem_real *rates, dem_contact *c) {
-    const dem_world *w = r->w;
-    const int a = r->span->a[q], b = r->span->b[q];
-    const demi_periods periods = demi_periods_of(w);
     const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
-    const dem_vec3 arm = r->span->ball
-        ? demi_at(w->bodies.centre + 4*r->span->ball[q]) : demi_v(0, 0, 0);
-    c->who.a = dem_body_id_get(w, a);
-    c->who.b = dem_body_id_get(w, b);
-    c->who.radius_a = ra;
-    c->who.radius_b = rb;
-    c->who.mass_a = w->bodies.mass[a];
-    c->who.mass_b = w->bodies.mass[b];
-    c->who.point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a), arm),
-        demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb))));
-    c->who.time = w->clock.time;
-    demi_who_reals(w, a, b, 0, rates, &c->who);
+    const dem_vec3 arm = demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb));
+    demi_who_fill(r->w, r->span->a[q], r->span->b[q], ra, rb, r->span->ball ? demi_add(arm,
+        demi_at(r->w->bodies.centre + 4*r->span->ball[q])) : arm, rates, &c->who);
 }
 /* Fills a dem_contact from row q for a user-defined law. */
 DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
@@ -20538,8 +20540,7 @@ static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, de
             out[count].share = wall->share*(dem_real)how;
             out[count].overlap = r - dist;
             out[count].point = demi_v(d.x*a, d.y*a, b);
-            out[count].normal = dist > 0
-                ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
+            out[count].normal = dist > 0 ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
             count++;
         }
         before = end;
@@ -23515,8 +23516,7 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
     c->overlap = ball->radius - (dem_real)off;
     if (!(c->overlap > -demi_range(w, p->radius + q->radius))) return 0;
     c->normal = demi_d3_real(at);
-    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
-                                   : demi_unit(gap);
+    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off)) : demi_unit(gap);
     c->deep = c->overlap/ball->radius;
     c->r_eff = ball->radius;
     c->arm_a = demi_d3_real(at);
@@ -23645,8 +23645,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
     overlap = (w->desc.planar ? demi_prisms_press : demi_solids_press)(&a, &b, &s) &&
-        demi_pressure_patch(&s, &p->q, &q->q, &at)
-        ? demi_shared_overlap(s.shared, r_eff) : 0;
+        demi_pressure_patch(&s, &p->q, &q->q, &at) ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;
     c->overlap = (dem_real)overlap;
@@ -24332,8 +24331,7 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
             demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
         if (old[e].b >= 0 || !demi_kept_one(w, &old[e], c) || old[e].part_a != c->part_a ||
-            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5))
-            continue;
+            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5)) continue;
         for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
         if (i == count) c->deep = 2 - c->deep;
     }
@@ -24801,22 +24799,13 @@ static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
     return demi_part_now(w, k->a, k->part_a).radius +
         (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
 }
-/* Fills in `who` for a law that has desc.law_who set. */
+/* Fills in `who` for a persistent contact. */
 static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rates,
                           dem_contact_who *who) {
-    const demi_periods periods = demi_periods_of(w);
-    who->a = dem_body_id_get(w, k->a);
-    who->radius_a = demi_part_now(w, k->a, k->part_a).radius;
-    who->mass_a = w->bodies.mass[k->a];
-    if (k->b >= 0) {
-        who->b = dem_body_id_get(w, k->b);
-        who->radius_b = demi_part_now(w, k->b, k->part_b).radius;
-        who->mass_b = w->bodies.mass[k->b];
-    } else if (demi_wall_is(&w->walls[k->wall], DEMI_BALLS))
-        who->radius_b = w->walls[k->wall].radius;
-    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*k->a), k->arm_a));
-    who->time = w->clock.time;
-    demi_who_reals(w, k->a, k->b, k->wall, rates, who);
+    const dem_real radius = k->b >= 0 ? demi_part_now(w, k->b, k->part_b).radius
+        : demi_wall_is(&w->walls[k->wall], DEMI_BALLS) ? w->walls[k->wall].radius : 0;
+    demi_who_fill(w, k->a, k->b < 0 ? -1 - k->wall : k->b, demi_part_now(w, k->a, k->part_a).radius,
+                  radius, k->arm_a, rates, who);
 }
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC push_options
@@ -25082,29 +25071,30 @@ static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run 
     c->user = w->desc.law_user;
     if (w->desc.law_who) demi_kept_who(w, k, t->rows.gains[q], &c->who);
 }
-/* Evaluates laws contact by contact: a user-defined law, or built-in laws for a few contacts. */
-static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
+/* Calls the law for row q of a tile. still: null, or where only the elastic force goes: the contact
+   is at rest then, and keeps its history. */
+static void demi_row_law(const dem_world *w, demi_tile *t, const demi_run *r, int q, dem_contact *c,
+                         dem_real *still) {
     dem_real m[DEMI_MEMORY];
     dem_contact_force f;
+    if (still) c->closing_speed = 0;
+    demi_recall(t, q, 0, r->keep, m);
+    demi_law(w, c, m, &f);
+    if (still) { *still = f.normal; return; }
+    demi_keep(t, q, 0, r->keep, m);
+    demi_normal_put(t, &r->same, q, &f, 2);
+    demi_tangent_put(t, &r->same, q, &f, 2);
+    demi_rolling_put(t, &r->same, q, &f, 2);
+}
+/* Evaluates laws contact by contact: a user-defined law, or built-in laws for a few contacts. */
+static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
     dem_contact c;
-    int q;
-    for (q = 0; q < t->count; q++) {
-        t->still[q] = 0;
-        if (demi_kept_lifted(t->contact[q])) {  /* at rest, with a copy of its history */
+    int q, rests;
+    for (q = 0; q < t->count; q++)
+        for (t->still[q] = 0, rests = demi_kept_lifted(t->contact[q]); rests >= 0; rests--) {
             demi_kept_see(w, t, r, q, &c);
-            demi_recall(&t->rows, q, 0, r->keep, m);
-            c.closing_speed = 0;
-            demi_law(w, &c, m, &f);
-            t->still[q] = f.normal;
+            demi_row_law(w, &t->rows, r, q, &c, rests ? &t->still[q] : 0);
         }
-        demi_kept_see(w, t, r, q, &c);
-        demi_recall(&t->rows, q, 0, r->keep, m);
-        demi_law(w, &c, m, &f);
-        demi_keep(&t->rows, q, 0, r->keep, m);
-        demi_normal_put(&t->rows, &r->same, q, &f, 2);
-        demi_tangent_put(&t->rows, &r->same, q, &f, 2);
-        demi_rolling_put(&t->rows, &r->same, q, &f, 2);
-    }
 }
 /* Evaluates the normal law at zero closing speed: the elastic force alone, N. History is
    restored. */
@@ -25531,8 +25521,7 @@ static void demi_member_coefs(const dem_world *w, demi_member_tile *m, int d, in
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
         dem_real *to = e == DEMI_CN ? m->base[0] : e == DEMI_CT ? m->base[1]
             : e == DEMI_CN_ROOT ? m->base[2] : e == DEMI_CT_ROOT ? m->base[3]
-            : e == DEMI_M_EFF ? m->base[4]
-            : m->t.rows.coef[e];
+            : e == DEMI_M_EFF ? m->base[4] : m->t.rows.coef[e];
         const dem_real *own = demi_many_species(w) ? w->near.coef +
             (base*DEMI_PAIR_COLUMNS + (size_t)e*stride) : 0;
         const dem_real *table = w->species_coef + e;
@@ -25621,27 +25610,16 @@ DEMI_CLONES static void demi_member_weigh(demi_kept_tile *DEMI_RESTRICT t, int f
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
-/* Calls the user-defined law for each contact of a tile, once more at zero closing speed for the
-   elastic force of merged contacts. */
+/* Calls the user-defined law for each contact of a tile, first at rest for merged contacts. */
 static void demi_member_law(const dem_world *w, demi_member_tile *m) {
-    demi_tile *rows = &m->t.rows;
     const demi_same same = m->run.same;
-    dem_real memory[DEMI_MEMORY];
-    dem_contact_force f;
     dem_contact c;
-    int q, again;
+    int q, rests;
     demi_who_clear(&c.who);
     for (q = 0; q < m->count; q++)
-        for (again = m->merged[q]; again >= 0; again--) {
-            demi_tile_own(rows, &m->run, &same, q, w->desc.law_who, &c);
-            if (again) c.closing_speed = 0;
-            demi_recall(rows, q, 0, m->run.keep, memory);
-            demi_law(w, &c, memory, &f);
-            if (again) { m->t.still[q] = f.normal; continue; }
-            demi_keep(rows, q, 0, m->run.keep, memory);
-            demi_normal_put(rows, &same, q, &f, 2);
-            demi_tangent_put(rows, &same, q, &f, 2);
-            demi_rolling_put(rows, &same, q, &f, 2);
+        for (rests = m->merged[q]; rests >= 0; rests--) {
+            demi_tile_own(&m->t.rows, &m->run, &same, q, w->desc.law_who, &c);
+            demi_row_law(w, &m->t.rows, &m->run, q, &c, rests ? &m->t.still[q] : 0);
         }
 }
 /* Evaluates the contacts of a tile: forces and torques about the centres of the spheres. */
@@ -28080,7 +28058,6 @@ static dem_result demi_impulses_settle(dem_world *w) {
 static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
-    const size_t vectors = (size_t)solver->vectors;
     const size_t bodies = (size_t)w->bodies.count;
     size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
     int d;
@@ -28096,7 +28073,7 @@ static int demi_impulses_room(dem_world *w) {
         DEMI_GROW(w, s->movers, solver->parts ? 2*movers : movers) &&
         DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
         (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
-        DEMI_GROW(w, s->vectors, vectors*n) && (!solver->parts || DEMI_GROW(w, s->degrees, bodies)) &&
+        DEMI_GROW(w, s->vectors, (size_t)solver->vectors*n) && DEMI_GROW(w, s->degrees, bodies) &&
         (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
 }
 /* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
@@ -40255,8 +40232,7 @@ static int demi_twin_lists_room(dem_world *t) {
         const demi_domain *o = &t->domains[d];
         const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
                               t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
-                                  ? o->walls : 0,
-                              t->domain_count > 1};
+                                  ? o->walls : 0, t->domain_count > 1};
         for (k = 0; k < 5; k++) most[k] = DEMI_MAX(most[k], counts[k]);
         crowd[d] = o->kept;
     }

@@ -476,8 +476,7 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
             demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
         if (old[e].b >= 0 || !demi_kept_one(w, &old[e], c) || old[e].part_a != c->part_a ||
-            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5))
-            continue;
+            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5)) continue;
         for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
         if (i == count) c->deep = 2 - c->deep;
     }

@@ -17,8 +17,7 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
     c->overlap = ball->radius - (dem_real)off;
     if (!(c->overlap > -demi_range(w, p->radius + q->radius))) return 0;
     c->normal = demi_d3_real(at);
-    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
-                                   : demi_unit(gap);
+    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off)) : demi_unit(gap);
     c->deep = c->overlap/ball->radius;
     c->r_eff = ball->radius;
     c->arm_a = demi_d3_real(at);
@@ -147,8 +146,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
     overlap = (w->desc.planar ? demi_prisms_press : demi_solids_press)(&a, &b, &s) &&
-        demi_pressure_patch(&s, &p->q, &q->q, &at)
-        ? demi_shared_overlap(s.shared, r_eff) : 0;
+        demi_pressure_patch(&s, &p->q, &q->q, &at) ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;
     c->overlap = (dem_real)overlap;

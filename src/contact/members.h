@@ -122,8 +122,7 @@ static void demi_member_coefs(const dem_world *w, demi_member_tile *m, int d, in
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
         dem_real *to = e == DEMI_CN ? m->base[0] : e == DEMI_CT ? m->base[1]
             : e == DEMI_CN_ROOT ? m->base[2] : e == DEMI_CT_ROOT ? m->base[3]
-            : e == DEMI_M_EFF ? m->base[4]
-            : m->t.rows.coef[e];
+            : e == DEMI_M_EFF ? m->base[4] : m->t.rows.coef[e];
         const dem_real *own = demi_many_species(w) ? w->near.coef +
             (base*DEMI_PAIR_COLUMNS + (size_t)e*stride) : 0;
         const dem_real *table = w->species_coef + e;
@@ -212,27 +211,16 @@ DEMI_CLONES static void demi_member_weigh(demi_kept_tile *DEMI_RESTRICT t, int f
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
-/* Calls the user-defined law for each contact of a tile, once more at zero closing speed for the
-   elastic force of merged contacts. */
+/* Calls the user-defined law for each contact of a tile, first at rest for merged contacts. */
 static void demi_member_law(const dem_world *w, demi_member_tile *m) {
-    demi_tile *rows = &m->t.rows;
     const demi_same same = m->run.same;
-    dem_real memory[DEMI_MEMORY];
-    dem_contact_force f;
     dem_contact c;
-    int q, again;
+    int q, rests;
     demi_who_clear(&c.who);
     for (q = 0; q < m->count; q++)
-        for (again = m->merged[q]; again >= 0; again--) {
-            demi_tile_own(rows, &m->run, &same, q, w->desc.law_who, &c);
-            if (again) c.closing_speed = 0;
-            demi_recall(rows, q, 0, m->run.keep, memory);
-            demi_law(w, &c, memory, &f);
-            if (again) { m->t.still[q] = f.normal; continue; }
-            demi_keep(rows, q, 0, m->run.keep, memory);
-            demi_normal_put(rows, &same, q, &f, 2);
-            demi_tangent_put(rows, &same, q, &f, 2);
-            demi_rolling_put(rows, &same, q, &f, 2);
+        for (rests = m->merged[q]; rests >= 0; rests--) {
+            demi_tile_own(&m->t.rows, &m->run, &same, q, w->desc.law_who, &c);
+            demi_row_law(w, &m->t.rows, &m->run, q, &c, rests ? &m->t.still[q] : 0);
         }
 }
 /* Evaluates the contacts of a tile: forces and torques about the centres of the spheres. */

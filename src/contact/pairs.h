@@ -7,25 +7,28 @@
    done, in list order. The order of every sum is thus independent of the number of threads.
    --------------------------------------------------------------------------------------------- */
 
-/* Fills in c->who for pair q. */
+/* Fills in `who` for a law that has desc.law_who set, for bodies a and b; b < 0: wall -1 - b, of
+   which the grains have the radius rb. arm: m, from a's centre to the contact point. */
+static void demi_who_fill(const dem_world *w, int a, int b, dem_real ra, dem_real rb, dem_vec3 arm,
+                          dem_real *rates, dem_contact_who *who) {
+    const demi_periods periods = demi_periods_of(w);
+    who->a = dem_body_id_get(w, a);
+    who->radius_a = ra;
+    who->mass_a = w->bodies.mass[a];
+    who->radius_b = rb;
+    if (b >= 0) who->b = dem_body_id_get(w, b);
+    if (b >= 0) who->mass_b = w->bodies.mass[b];
+    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), arm));
+    who->time = w->clock.time;
+    demi_who_reals(w, a, DEMI_MAX(b, -1), b < 0 ? -1 - b : 0, rates, who);
+}
+/* The same for pair q. */
 static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
                                      dem_real *rates, dem_contact *c) {
-    const dem_world *w = r->w;
-    const int a = r->span->a[q], b = r->span->b[q];
-    const demi_periods periods = demi_periods_of(w);
     const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
-    const dem_vec3 arm = r->span->ball
-        ? demi_at(w->bodies.centre + 4*r->span->ball[q]) : demi_v(0, 0, 0);
-    c->who.a = dem_body_id_get(w, a);
-    c->who.b = dem_body_id_get(w, b);
-    c->who.radius_a = ra;
-    c->who.radius_b = rb;
-    c->who.mass_a = w->bodies.mass[a];
-    c->who.mass_b = w->bodies.mass[b];
-    c->who.point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a), arm),
-        demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb))));
-    c->who.time = w->clock.time;
-    demi_who_reals(w, a, b, 0, rates, &c->who);
+    const dem_vec3 arm = demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb));
+    demi_who_fill(r->w, r->span->a[q], r->span->b[q], ra, rb, r->span->ball ? demi_add(arm,
+        demi_at(r->w->bodies.centre + 4*r->span->ball[q])) : arm, rates, &c->who);
 }
 /* Fills a dem_contact from row q for a user-defined law. */
 DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,

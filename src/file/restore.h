@@ -449,8 +449,7 @@ static int demi_twin_lists_room(dem_world *t) {
         const demi_domain *o = &t->domains[d];
         const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
                               t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
-                                  ? o->walls : 0,
-                              t->domain_count > 1};
+                                  ? o->walls : 0, t->domain_count > 1};
         for (k = 0; k < 5; k++) most[k] = DEMI_MAX(most[k], counts[k]);
         crowd[d] = o->kept;
     }

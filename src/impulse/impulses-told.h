@@ -27,7 +27,6 @@ static dem_result demi_impulses_settle(dem_world *w) {
 static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
-    const size_t vectors = (size_t)solver->vectors;
     const size_t bodies = (size_t)w->bodies.count;
     size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
     int d;
@@ -43,7 +42,7 @@ static int demi_impulses_room(dem_world *w) {
         DEMI_GROW(w, s->movers, solver->parts ? 2*movers : movers) &&
         DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
         (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
-        DEMI_GROW(w, s->vectors, vectors*n) && (!solver->parts || DEMI_GROW(w, s->degrees, bodies)) &&
+        DEMI_GROW(w, s->vectors, (size_t)solver->vectors*n) && DEMI_GROW(w, s->degrees, bodies) &&
         (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
 }
 /* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
