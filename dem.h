@@ -621,6 +621,7 @@
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
      [RUB15]   Rubio-Largo, Lind, Maza & Hidalgo, Comput. Part. Mech. 2 (2015) 127: granular gas of
                ellipsoids on GPUs
+     [SIL10]   Silcowitz, Niebe & Erleben, Visual Comput. 26 (2010) 893: conjugate sweeps
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
      [SPI24]   del Valle et al., Comput. Phys. Commun. 297 (2024) 109077: SPIRAL
      [STE96]   Stewart & Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673: rigid bodies by steps
@@ -4055,9 +4056,9 @@ static void demi_parallel(dem_world *w, int threads, int count, const double *mi
 }
 /* 1: worlds use as many threads as their desc says. See >>team. */
 #ifdef DEM_THREADS_FIXED
-enum { DEMI_CREW_FIXED = 1 };
+enum { DEMI_THREADS_FIXED = 1 };
 #else
-enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
+enum { DEMI_THREADS_FIXED = !DEMI_OPENMP };
 #endif
 /* Number of threads to use if desc.threads is 0. */
 static int demi_threads_available(void) {
@@ -4491,8 +4492,7 @@ typedef struct demi_near {
 enum { DEMI_M_EFF = DEMI_COEFS,
       DEMI_TILE_COLUMNS,                        /* those that stages read; the others: */
       DEMI_CN_ROOT = DEMI_TILE_COLUMNS,         /* of clusters: see demi_coefficients_rooted */
-      DEMI_CT_ROOT,
-      DEMI_PAIR_COLUMNS };
+      DEMI_CT_ROOT, DEMI_PAIR_COLUMNS };
 /* A species: spheres that are equal in everything that coefficients depend on. For up to
    DEMI_SPECIES species a table has a row of coefficients for every two of them. With more (radii
    drawn at random), every pair of the pruned list stores its own coefficients. */
@@ -5242,14 +5242,14 @@ typedef struct demi_output {
    demi_calls has changed it, so that demi_called restores it. */
 typedef struct demi_calling { const char *who; int within, set; } demi_calling;
 
-/* How many threads a world uses, see demi_crew_judge. Not part of the state. */
-typedef struct demi_crew {
+/* How many threads a world uses, see demi_threads_judge. Not part of the state. */
+typedef struct demi_threads {
     int now, best;                 /* threads of this step; of steps outside trials */
     int steps, turn, fixed;        /* steps measured; kind of the last trial; 1: no trials */
     double begun, sum, cost;       /* s: start of the step; time of `steps`; per step with `best` */
     double since, wait;            /* s: since the last trial, until the next one */
     uint64_t rebuilds;             /* when this step began */
-} demi_crew;
+} demi_threads;
 
 /* Observers of a run: outputs, replays, progress. Not part of the state, except `written` of
    outputs: reading a checkpoint does not change them. */
@@ -5271,8 +5271,8 @@ typedef struct demi_lookers {
 /* Data of the solvers for impulses, set up again in every step (>>impulses). demi_meeting: the
    constraint of a contact. demi_impulse: the same contact as solvers iterate over it. demi_beside:
    its data that sweeps do not need. demi_twist: its rolling and spinning friction. demi_mover:
-   velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_knot: a body or
-   joint in the linear system of all joints. */
+   velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_joint_node: a
+   body or joint in the linear system of all joints. */
 struct demi_meeting;
 struct demi_impulse;
 struct demi_beside;
@@ -5280,7 +5280,7 @@ struct demi_twist;
 struct demi_mover;
 struct demi_run_sums;
 struct demi_rod;
-struct demi_knot;
+struct demi_joint_node;
 struct demi_link_of;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
@@ -5300,11 +5300,11 @@ typedef struct demi_solver {
     struct demi_run_sums *runs;    /* sums over each run of contacts, a block of one colour */
     struct demi_rod *rods;         /* one per joint */
     int32_t *joined;               /* of each body: its first joint, see demi_joined */
-    struct demi_knot *knots;       /* unknowns of the joints' linear system: bodies and joints */
-    int32_t *knot_of, *rows;       /* knot of each body; row of each entry of the factor */
+    struct demi_joint_node *nodes; /* unknowns of the joints' linear system: bodies and joints */
+    int32_t *node_of, *rows;       /* node of each body; row of each entry of the factor */
     struct demi_link_of *links;
     double *blocks;                /* x 36: pivots of the factor, and entries below them */
-    int knot_count, row_count, link_count, factored;
+    int node_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; range of the colour being swept; its first run */
     int limited;                   /* contacts at their friction limit in the last unsolved step */
     int twisted;                   /* 1: there is rolling or spinning friction */
@@ -5461,7 +5461,7 @@ struct dem_world {
     double wall_fastest;           /* m/s, fastest wall point of the step */
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
-    demi_crew crew;                /* >>team: threads in use */
+    demi_threads threads;                /* >>team: threads in use */
     int facets_valid;              /* surfaces fit the walls and their motions */
     int sheeted;                   /* 1: some surface may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */
@@ -5480,7 +5480,7 @@ struct dem_world {
     int written_count;             /* >>output: outputs in the checkpoint that was read last */
     demi_written *written;
     struct demi_sphere *crowd;     /* >>placing: occupancy tree of spheres, and its nodes */
-    struct demi_node *crowd_nodes;
+    struct demi_crowd_node *crowd_nodes;
     dem_real *crowd_turned;        /* x 4: orientations of the bodies placed */
     double dt_share;               /* trials: factor on the automatic time step; 0: 1 */
     struct demi_press *press;      /* loads on bodies, while >>advice chooses the time step */
@@ -5618,7 +5618,7 @@ DEM_INLINE dem_real demi_radius(const dem_world *w, int i) { return w->bodies.po
    on several threads cannot. */
 static void demi_domains_do(dem_world *w, demi_task task) {
     const demi_calling was = demi_calls(w, "a step", 1);
-    demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
+    demi_parallel(w, w->threads.now, w->domain_count, w->domain_middle, task);
     demi_called(w, was);
 }
 /* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this
@@ -6399,7 +6399,7 @@ static int demi_sane(double x, double least) { return demi_finite_double(x) && x
    exchange data of ghost particles and agree on maxima and failures. A single world has no team and
    is its own only member: an exchange then does nothing, and an agreement returns the member's own
    numbers. struct demi_team in >>layout lists the functions of a team; >>slabs-step provides them
-   for slabs. At the end, the number of threads of a single world. Owns w->crew.
+   for slabs. At the end, the number of threads of a single world. Owns w->threads.
    --------------------------------------------------------------------------------------------- */
 
 /* Return the number of members in this process, and member k. In all parts `h` is the head of a
@@ -6442,23 +6442,23 @@ static void demi_dt_share(dem_world *h) {
    time; after a successful one it tries again at once. Trials take at most some 5 % of the time.
    Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
    desc. --- */
-enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
+enum { DEMI_THREADS_STEPS = 12 };                  /* steps of a trial */
 /* True if the number of threads of a world is to be chosen. */
-static int demi_crew_varies(const dem_world *h) {
-    return !h->crew.fixed && !h->team && h->desc.threads > 1;
+static int demi_threads_varies(const dem_world *h) {
+    return !h->threads.fixed && !h->team && h->desc.threads > 1;
 }
-static void demi_crew_begin(dem_world *h) {
+static void demi_threads_begin(dem_world *h) {
     int k;
     for (k = 0; k < demi_members(h); k++) {
-        demi_crew *c = &demi_member(h, k)->crew;
+        demi_threads *c = &demi_member(h, k)->threads;
         if (!c->best) c->best = c->now = demi_member(h, k)->desc.threads;
     }
-    h->crew.rebuilds = h->clock.rebuilds;
-    if (demi_crew_varies(h)) h->crew.begun = demi_clock();
+    h->threads.rebuilds = h->clock.rebuilds;
+    if (demi_threads_varies(h)) h->threads.begun = demi_clock();
 }
 /* The number of threads to try next: half as many as now, one, or twice as many, in turns. `slow`:
    steps have become slower, perhaps since another program keeps cores busy. */
-static int demi_crew_other(demi_crew *c, int most, int slow) {
+static int demi_threads_other(demi_threads *c, int most, int slow) {
     int k, n = c->best;
     for (k = 0; k < 3 && n == c->best; k++) {
         c->turn = slow && !k ? 1 : (c->turn + 1)%3;
@@ -6467,14 +6467,14 @@ static int demi_crew_other(demi_crew *c, int most, int slow) {
     return n;
 }
 /* Starts a measurement with `now` threads, which may be `best`. */
-static void demi_crew_try(demi_crew *c, int now) {
+static void demi_threads_try(demi_threads *c, int now) {
     c->now = now;
     c->steps = 0;
     c->sum = 0;
 }
 /* Decides by the time of a step, s, how many threads take the next one. */
-static void demi_crew_judge(dem_world *w, double took) {
-    demi_crew *c = &w->crew;
+static void demi_threads_judge(dem_world *w, double took) {
+    demi_threads *c = &w->threads;
     const int first = !(c->cost > 0), trial = c->now != c->best;
     double lost;
     if (!trial) c->since += took;
@@ -6484,7 +6484,7 @@ static void demi_crew_judge(dem_world *w, double took) {
     lost = c->sum - c->steps*c->cost;
     if (trial) {
         const int worse = lost > 4*c->cost;
-        if (!worse && c->steps < DEMI_CREW_STEPS) return;
+        if (!worse && c->steps < DEMI_THREADS_STEPS) return;
         c->wait = DEMI_MAX(20*lost, DEMI_MAX(400*c->cost, DEMI_MIN(2*c->wait, 10)));
         if (!worse && c->sum < 0.97*c->steps*c->cost) {
             c->best = c->now;
@@ -6492,17 +6492,17 @@ static void demi_crew_judge(dem_world *w, double took) {
             c->wait = 0;                        /* perhaps farther the same way */
         }
         c->since = 0;
-        demi_crew_try(c, c->best);
+        demi_threads_try(c, c->best);
     } else {
-        const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
-        if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
+        const int slow = !first && lost > 2*DEMI_THREADS_STEPS*c->cost;
+        if (c->steps < (first ? 2 : DEMI_THREADS_STEPS) && !slow) return;
         c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
-        demi_crew_try(c, first || slow || c->since > c->wait
-                      ? demi_crew_other(c, w->desc.threads, slow) : c->best);
+        demi_threads_try(c, first || slow || c->since > c->wait
+                      ? demi_threads_other(c, w->desc.threads, slow) : c->best);
     }
 }
-static void demi_crew_end(dem_world *w) {
-    if (demi_crew_varies(w)) demi_crew_judge(w, demi_clock() - w->crew.begun);
+static void demi_threads_end(dem_world *w) {
+    if (demi_threads_varies(w)) demi_threads_judge(w, demi_clock() - w->threads.begun);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -10346,8 +10346,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (w->bodies.orienting)
         demi_quat_put(w->bodies.orient + 4*i,
                       demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)
-                                                               : q,
-                                                            shape->frame) : q));
+                                                               : q, shape->frame) : q));
     demi_body_start(w, i, v, spin, before);
     demi_scene_changed(w);
     return DEM_OK;
@@ -13368,10 +13367,10 @@ static int demi_join_double(dem_world *w, demi_join *j) {
 /* --- facets in one plane that cover each other --- */
 
 /* A convex piece of a triangle. */
-enum { DEMI_SHARD = 12 };
-typedef struct demi_shard { int count; demi_d3 x[DEMI_SHARD]; } demi_shard;
+enum { DEMI_PIECE_CORNERS = 12 };
+typedef struct demi_facet_piece { int count; demi_d3 x[DEMI_PIECE_CORNERS]; } demi_facet_piece;
 /* The width of a piece, m: twice its area over the length of its outline. */
-static double demi_shard_width(const demi_shard *s) {
+static double demi_piece_width(const demi_facet_piece *s) {
     demi_d3 area = demi_d(0, 0, 0);
     double around = 0;
     int k;
@@ -13382,25 +13381,25 @@ static double demi_shard_width(const demi_shard *s) {
     }
     return around > 0 ? demi_d3_length(area)/around : 0;
 }
-static demi_shard demi_shard_of(const demi_join *j, int i) {
-    demi_shard s;
+static demi_facet_piece demi_piece_of(const demi_join *j, int i) {
+    demi_facet_piece s;
     for (s.count = 0; s.count < 3; s.count++)
         s.x[s.count] = demi_d3_at(j->x + 3*j->facet[5*i + s.count]);
     return s;
 }
-static demi_d3 demi_shard_normal(const demi_shard *t) {
+static demi_d3 demi_piece_normal(const demi_facet_piece *t) {
     return demi_d3_unit(demi_d3_normal(t->x[0], t->x[1], t->x[2]));
 }
 /* The directions into a triangle from its sides, unit. */
-static void demi_shard_inward(const demi_shard *t, demi_d3 *in) {
-    const demi_d3 n = demi_shard_normal(t);
+static void demi_piece_inward(const demi_facet_piece *t, demi_d3 *in) {
+    const demi_d3 n = demi_piece_normal(t);
     int k;
     for (k = 0; k < 3; k++)
         in[k] = demi_d3_unit(demi_d3_cross(n, demi_d3_sub(t->x[(k + 1)%3], t->x[k])));
 }
 /* True if a triangle of corners c (x 3) is beyond a side of triangle s, or touches it there. in: of
    s. */
-DEM_INLINE int demi_shard_beyond(const demi_shard *s, const demi_d3 *in, const double *c,
+DEM_INLINE int demi_piece_beyond(const demi_facet_piece *s, const demi_d3 *in, const double *c,
                                  double tiny) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -13412,36 +13411,36 @@ DEM_INLINE int demi_shard_beyond(const demi_shard *s, const demi_d3 *in, const d
     return 0;
 }
 /* Clips a piece to side k of triangle t; out: to what is beyond that side. */
-static void demi_shard_clip(demi_shard *s, const demi_shard *t, int k, int out) {
+static void demi_piece_clip(demi_facet_piece *s, const demi_facet_piece *t, int k, int out) {
     const demi_d3 e = demi_d3_sub(t->x[(k + 1)%3], t->x[k]);
-    const demi_d3 in = demi_d3_cross(demi_shard_normal(t), e);
+    const demi_d3 in = demi_d3_cross(demi_piece_normal(t), e);
     s->count = demi_polygon_clip(s->x, s->count, out ? demi_d3_scale(in, -1) : in, t->x[k]);
 }
 /* True if triangle t covers a part of triangle s wider than `tiny`, m, in the same plane. */
-static int demi_shard_covered(const demi_shard *s, const demi_shard *t, double tiny) {
-    const demi_d3 n = demi_shard_normal(t);
-    demi_shard common = *s;
+static int demi_piece_covered(const demi_facet_piece *s, const demi_facet_piece *t, double tiny) {
+    const demi_d3 n = demi_piece_normal(t);
+    demi_facet_piece common = *s;
     int k;
     for (k = 0; k < 3; k++)
         if (!(fabs(demi_d3_dot(n, demi_d3_sub(s->x[k], t->x[0]))) <= tiny)) return 0;
-    for (k = 0; k < 3; k++) demi_shard_clip(&common, t, k, 0);
-    return demi_shard_width(&common) > tiny;
+    for (k = 0; k < 3; k++) demi_piece_clip(&common, t, k, 0);
+    return demi_piece_width(&common) > tiny;
 }
 /* Removes from the pieces of a facet what triangle t covers. Returns 0 if memory ran out. */
-static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const demi_shard *t,
-                            double tiny) {
+static int demi_pieces_less(dem_world *w, demi_facet_piece **pieces, int *count,
+                            const demi_facet_piece *t, double tiny) {
     const int all = *count;
     int i, k, left = 0;
     if (!demi_grow(w, DEMI_LOOSE, pieces, sizeof **pieces, 4*(size_t)all)) return 0;
     memmove(*pieces + 3*all, *pieces, (size_t)all*sizeof **pieces);
     for (i = 0; i < all; i++) {
-        demi_shard rest = (*pieces)[3*all + i];
-        for (k = 0; k < 3 && rest.count < DEMI_SHARD; k++) {
-            demi_shard *out = &(*pieces)[left];
+        demi_facet_piece rest = (*pieces)[3*all + i];
+        for (k = 0; k < 3 && rest.count < DEMI_PIECE_CORNERS; k++) {
+            demi_facet_piece *out = &(*pieces)[left];
             *out = rest;
-            demi_shard_clip(out, t, k, 1);
-            left += demi_shard_width(out) > tiny;
-            demi_shard_clip(&rest, t, k, 0);
+            demi_piece_clip(out, t, k, 1);
+            left += demi_piece_width(out) > tiny;
+            demi_piece_clip(&rest, t, k, 0);
         }
         if (k < 3) (*pieces)[left++] = rest;    /* too many corners: covered twice, but no hole */
     }
@@ -13449,7 +13448,8 @@ static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const
     return 1;
 }
 /* Adds the pieces of facet i as facets. Returns 0 if memory ran out. */
-static int demi_join_shards(dem_world *w, demi_join *j, int i, const demi_shard *piece, int count) {
+static int demi_join_pieces(dem_world *w, demi_join *j, int i, const demi_facet_piece *piece,
+                            int count) {
     int p, k, m;
     for (p = 0; p < count; p++, piece++) {
         const size_t points = (size_t)(j->points + piece->count);
@@ -13502,7 +13502,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     double *half = (double *)demi_alloc(w, (size_t)all*3, sizeof *half);
     double *corner = (double *)demi_alloc(w, (size_t)all*9, sizeof *corner);
     unsigned char *gone = (unsigned char *)demi_alloc(w, (size_t)all, 1);
-    demi_shard *pieces = 0;
+    demi_facet_piece *pieces = 0;
     demi_tree tree;
     int i, k, m, any = 0, ok = middle && half && corner && gone;
     memset(&tree, 0, sizeof tree);
@@ -13521,35 +13521,35 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     ok = ok && demi_tree_make(w, &tree, middle, all);
     for (i = 0; i < all && ok; i++) {
         const double *at = middle + 3*i, *size = half + 3*i;
-        const demi_shard own = demi_shard_of(j, i);
+        const demi_facet_piece own = demi_piece_of(j, i);
         const double tiny = j->near_by[j->facet[5*i]];
         demi_search_line line;
         demi_d3 in[3];
         int32_t other;
         int count = 0;
-        demi_shard_inward(&own, in);
+        demi_piece_inward(&own, in);
         demi_tree_line(&line, &tree, at, at, DEMI_MAX(size[0], DEMI_MAX(size[1], size[2])));
         while (ok && (other = demi_tree_next(&line)) >= 0) {
             const int32_t shell = j->facet[5*i + 4], its = j->facet[5*other + 4];
             const int closed = shell >= 0 && its >= 0 && shell != its;
-            demi_shard t;
+            demi_facet_piece t;
             if (other == i || (other > i && !closed)) continue;
             for (k = 0; k < 3; k++)
                 if (fabs(middle[3*other + k] - at[k]) > half[3*other + k] + size[k] + tiny) break;
-            if (k < 3 || demi_shard_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
-            t = demi_shard_of(j, other);
-            if (other > i && demi_d3_dot(demi_shard_normal(&t), demi_shard_normal(&own)) > 0)
+            if (k < 3 || demi_piece_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
+            t = demi_piece_of(j, other);
+            if (other > i && demi_d3_dot(demi_piece_normal(&t), demi_piece_normal(&own)) > 0)
                 continue;
-            if (!demi_shard_covered(&own, &t, tiny)) continue;
+            if (!demi_piece_covered(&own, &t, tiny)) continue;
             if (!gone[i]) {
                 ok = demi_grow(w, DEMI_LOOSE, &pieces, sizeof *pieces, 1);
                 if (ok) pieces[0] = own;
                 count = 1;
                 any = gone[i] = 1;
             }
-            if (ok && count) ok = demi_shards_less(w, &pieces, &count, &t, tiny);
+            if (ok && count) ok = demi_pieces_less(w, &pieces, &count, &t, tiny);
         }
-        if (ok && gone[i]) ok = demi_join_shards(w, j, i, pieces, count);
+        if (ok && gone[i]) ok = demi_join_pieces(w, j, i, pieces, count);
     }
     if (ok && any) ok = demi_join_again(w, j, gone, all);
     demi_free(w, middle);
@@ -13905,16 +13905,16 @@ static int demi_join_coarsen(dem_world *w, demi_join *j) {
 
 /* A tessellation while it is made. Points and facets are appended; `failed` is set if memory ran
    out. */
-typedef struct demi_form {
+typedef struct demi_draft {
     dem_world *w;
     int per, points, facets, failed;           /* per: corners of a facet, 3 or 2 (>>layout) */
     dem_real *x;                   /* points x 3, m, in the wall's frame */
     int32_t *corner;               /* facets x per */
     double chord;                  /* m, largest distance from curves */
     dem_vec3 step[2];              /* m, in the wall's frame: the surface repeats; 0: it does not */
-} demi_form;
-typedef void (*demi_tessellate_fn)(const demi_wall *wall, demi_form *form);
-static int32_t demi_form_point(demi_form *f, double x, double y, double z) {
+} demi_draft;
+typedef void (*demi_tessellate_fn)(const demi_wall *wall, demi_draft *draft);
+static int32_t demi_draft_point(demi_draft *f, double x, double y, double z) {
     if (!demi_grow(f->w, DEMI_LOOSE, &f->x, sizeof(dem_real), 3*((size_t)f->points + 1))) {
         f->failed = 1;
         return 0;
@@ -13923,37 +13923,37 @@ static int32_t demi_form_point(demi_form *f, double x, double y, double z) {
     return f->points++;
 }
 /* Adds a triangle, or (per 2) the segment from a to b. */
-static void demi_form_facet(demi_form *f, int32_t a, int32_t b, int32_t c) {
+static void demi_draft_facet(demi_draft *f, int32_t a, int32_t b, int32_t c) {
     const int32_t all[3] = {a, b, c};
     if (f->failed || !demi_grow(f->w, DEMI_LOOSE, &f->corner, sizeof(int32_t),
                                 (size_t)f->per*((size_t)f->facets + 1))) f->failed = 1;
     else memcpy(f->corner + f->per*f->facets++, all, (size_t)f->per*sizeof *all);
 }
-static void demi_form_quad(demi_form *f, int32_t a, int32_t b, int32_t c, int32_t d) {
-    demi_form_facet(f, a, b, c);
-    demi_form_facet(f, a, c, d);
+static void demi_draft_quad(demi_draft *f, int32_t a, int32_t b, int32_t c, int32_t d) {
+    demi_draft_facet(f, a, b, c);
+    demi_draft_facet(f, a, c, d);
 }
-static void demi_form_free(demi_form *f) {
+static void demi_draft_free(demi_draft *f) {
     demi_free(f->w, f->x);
     demi_free(f->w, f->corner);
 }
 /* The number of sides of a circle of radius r. */
 enum { DEMI_FORM_LEAST = 24, DEMI_FORM_MOST = 12288 };
-static int demi_form_sides(const demi_form *f, double r) {
+static int demi_draft_sides(const demi_draft *f, double r) {
     int n = DEMI_FORM_LEAST;
     while (n < DEMI_FORM_MOST && DEMI_PI*DEMI_PI*r/2 > f->chord*n*n) n *= 2;
     return n;
 }
 /* The corner radius of a polygon of n sides that has the area of a circle of radius r. */
-static double demi_form_radius(double r, int n) {
+static double demi_draft_radius(double r, int n) {
     const double turn = 2*DEMI_PI/n;
     return r*sqrt(turn/demi_sin(turn));
 }
 /* Adds a regular polygon of n points about (x, y) at height z. Returns the first. axis: 2 across z,
    0 across x, 1 across y: z, x and y are then along, and across the axis in cyclic order. */
-static int32_t demi_form_ring(demi_form *f, int axis, int n, double r, double u, double v,
+static int32_t demi_draft_ring(demi_draft *f, int axis, int n, double r, double u, double v,
                               double along) {
-    const double R = demi_form_radius(r, n);
+    const double R = demi_draft_radius(r, n);
     const int32_t first = f->points;
     int i;
     for (i = 0; i < n; i++) {
@@ -13961,47 +13961,48 @@ static int32_t demi_form_ring(demi_form *f, int axis, int n, double r, double u,
         x[axis] = along;
         x[(axis + 1)%3] = u + R*demi_cos(2*DEMI_PI*i/n);
         x[(axis + 2)%3] = v + R*demi_sin(2*DEMI_PI*i/n);
-        demi_form_point(f, x[0], x[1], x[2]);
+        demi_draft_point(f, x[0], x[1], x[2]);
     }
     return first;
 }
 /* Joins two rings: of n points from a, and of n, 2 n, n/2 or one (a point on the axis) from b. */
-static void demi_form_band(demi_form *f, int32_t a, int n, int32_t b, int m) {
+static void demi_draft_band(demi_draft *f, int32_t a, int n, int32_t b, int m) {
     int i;
     if (m < n) { const int32_t c = a; a = b; b = c; i = n; n = m; m = i; }
-    for (i = 0; i < m && n == 1; i++) demi_form_facet(f, a, b + i, b + (i + 1)%m);
+    for (i = 0; i < m && n == 1; i++) demi_draft_facet(f, a, b + i, b + (i + 1)%m);
     for (i = 0; i < n && n > 1; i++) {
         const int32_t p = a + i, q = a + (i + 1)%n;
-        if (m == n) demi_form_quad(f, p, b + i, b + (i + 1)%n, q);
+        if (m == n) demi_draft_quad(f, p, b + i, b + (i + 1)%n, q);
         else {
-            demi_form_facet(f, p, b + 2*i, b + 2*i + 1);
-            demi_form_facet(f, p, b + 2*i + 1, q);
-            demi_form_facet(f, q, b + 2*i + 1, b + (2*i + 2)%m);
+            demi_draft_facet(f, p, b + 2*i, b + 2*i + 1);
+            demi_draft_facet(f, p, b + 2*i + 1, q);
+            demi_draft_facet(f, q, b + 2*i + 1, b + (2*i + 2)%m);
         }
     }
 }
 
 /* --- kinds of walls --- */
 
-static void demi_cylinder_tessellate(const demi_wall *wall, demi_form *f) {
-    const int n = demi_form_sides(f, (double)wall->radius);
+static void demi_cylinder_tessellate(const demi_wall *wall, demi_draft *f) {
+    const int n = demi_draft_sides(f, (double)wall->radius);
     int i;
-    demi_form_ring(f, 2, n, (double)wall->radius, 0, 0, 0);
-    for (i = 0; i < n; i++) demi_form_facet(f, i, (i + 1)%n, 0);
+    demi_draft_ring(f, 2, n, (double)wall->radius, 0, 0, 0);
+    for (i = 0; i < n; i++) demi_draft_facet(f, i, (i + 1)%n, 0);
 }
 /* Adds the next ring of a surface of revolution and joins it to the one before, which begins at
    *at and has *n corners (0: there is none). back: 1: it is the first ring again. */
-static void demi_revolved_ring(demi_form *f, double r, double z, int back, int32_t *at, int *n) {
-    const int sides = r > 0 ? demi_form_sides(f, r) : 1, before = *n;
+static void demi_revolved_ring(demi_draft *f, double r, double z, int back, int32_t *at, int *n) {
+    const int sides = r > 0 ? demi_draft_sides(f, r) : 1, before = *n;
     const int32_t from = *at;
     *n = sides;
-    *at = back ? 0 : r > 0 ? demi_form_ring(f, 2, sides, r, 0, 0, z) : demi_form_point(f, 0, 0, z);
-    if (before) demi_form_band(f, from, before, *at, sides);
+    *at = back ? 0 : r > 0 ? demi_draft_ring(f, 2, sides, r, 0, 0, z)
+        : demi_draft_point(f, 0, 0, z);
+    if (before) demi_draft_band(f, from, before, *at, sides);
 }
 /* The rings of the wall, and more between them: where the radius changes by more than a factor of
    four, so that the number of sides doubles or halves at most, and where facets would be more than
    500 times as long as wide (but at most 1000 of these on a piece). */
-static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
+static void demi_revolved_tessellate(const demi_wall *wall, demi_draft *f) {
     const int last = wall->ring_count - 1;
     /* just below the radius at which circles get twice as many sides */
     const double sides = DEMI_FORM_LEAST;
@@ -14012,7 +14013,7 @@ static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
     for (k = 1; k <= last; k++) {
         const double a = (double)wall->ring_radius[k - 1], b = (double)wall->ring_radius[k];
         const double g = (double)wall->ring_height[k - 1], h = (double)wall->ring_height[k];
-        const double big = DEMI_MAX(a, b), wide = 2*DEMI_PI*big/demi_form_sides(f, big);
+        const double big = DEMI_MAX(a, b), wide = 2*DEMI_PI*big/demi_draft_sides(f, big);
         const int closed = k == last && fabs(b - (double)wall->ring_radius[0]) +
             fabs(h - (double)wall->ring_height[0]) < 1e-9*(double)wall->radius;
         double t = 0, to;
@@ -14032,13 +14033,13 @@ static void demi_revolved_tessellate(const demi_wall *wall, demi_form *f) {
 
 /* A plate with a rectangular or round hole: both faces, with the cell's corners halfway between
    holes, and the wall of the hole. A plate without thickness has one face. */
-static void demi_plate_tessellate(const dem_sieve_desc *s, demi_form *f) {
+static void demi_plate_tessellate(const dem_sieve_desc *s, demi_draft *f) {
     const double bar = (double)s->bar, half = (double)s->thickness/2;
     const double b = (double)s->aperture/2;
     const double a = s->kind == DEM_SIEVE_SLOTS ? (double)s->length/2 : b;
     const int round = s->kind == DEM_SIEVE_ROUND, corners = round && s->staggered ? 6 : 4;
     const double root3 = 1.7320508075688772;
-    const int n = round ? demi_form_sides(f, b) : 4, per = n/corners, layers = half > 0 ? 2 : 1;
+    const int n = round ? demi_draft_sides(f, b) : 4, per = n/corners, layers = half > 0 ? 2 : 1;
     int32_t ring[2], rim[2];
     int i, k, layer;
     for (layer = 0; layer < layers; layer++) {
@@ -14047,52 +14048,52 @@ static void demi_plate_tessellate(const dem_sieve_desc *s, demi_form *f) {
         for (i = 0; i < corners; i++) {         /* of the cell: halfway between holes */
             const double at = DEMI_PI*(2*i + 1)/corners;
             if (corners == 6)
-                demi_form_point(f, (2*b + bar)/root3*demi_cos(at),
+                demi_draft_point(f, (2*b + bar)/root3*demi_cos(at),
                                 (2*b + bar)/root3*demi_sin(at), z);
-            else demi_form_point(f, (i == 0 || i == 3 ? 1 : -1)*(a + bar/2),
+            else demi_draft_point(f, (i == 0 || i == 3 ? 1 : -1)*(a + bar/2),
                                  (i < 2 ? 1 : -1)*(b + bar/2), z);
         }
         ring[layer] = f->points;
-        if (round) demi_form_ring(f, 2, n, b, 0, 0, z);
+        if (round) demi_draft_ring(f, 2, n, b, 0, 0, z);
         for (i = 0; i < 4 && !round; i++)
-            demi_form_point(f, (i == 0 || i == 3 ? 1 : -1)*a, (i < 2 ? 1 : -1)*b, z);
+            demi_draft_point(f, (i == 0 || i == 3 ? 1 : -1)*a, (i < 2 ? 1 : -1)*b, z);
         for (i = 0; i < corners; i++) {
             const int32_t p = rim[layer] + i, q = rim[layer] + (i + 1)%corners;
             const int from = round ? i*per : i, to = (from + per)%n;
             for (k = from; k < from + per && round; k++)
-                demi_form_facet(f, p, ring[layer] + k, ring[layer] + (k + 1)%n);
-            if (round) demi_form_facet(f, p, ring[layer] + to, q);
-            else demi_form_quad(f, p, ring[layer] + i, ring[layer] + to, q);
+                demi_draft_facet(f, p, ring[layer] + k, ring[layer] + (k + 1)%n);
+            if (round) demi_draft_facet(f, p, ring[layer] + to, q);
+            else demi_draft_quad(f, p, ring[layer] + i, ring[layer] + to, q);
         }
     }
-    if (layers == 2) demi_form_band(f, ring[0], n, ring[1], n);
+    if (layers == 2) demi_draft_band(f, ring[0], n, ring[1], n);
     f->step[0] = demi_v((dem_real)(2*a + bar), 0, 0);
     f->step[1] = corners == 6 ? demi_v((dem_real)(b + bar/2), (dem_real)((2*b + bar)*root3/2), 0)
         : demi_v(0, (dem_real)(2*b + bar), 0);
 }
 /* One wire, bar or strip between endless slots along x (axis 0) or y (axis 1): a prism of n
    corners, or the four of a strip, of two if it has no thickness. */
-static void demi_row_tessellate(const dem_sieve_desc *s, int axis, demi_form *f) {
+static void demi_row_tessellate(const dem_sieve_desc *s, int axis, demi_draft *f) {
     const int wires = demi_sieve_wires(s), flat = !wires && !(s->thickness > 0);
     const double pitch = (double)(s->aperture + s->bar), q = (double)s->bar/2;
     const double z = !wires ? 0 : axis ? (double)s->lift/2 : -(double)s->lift/2;
-    const int n = wires ? demi_form_sides(f, q) : flat ? 2 : 4;
+    const int n = wires ? demi_draft_sides(f, q) : flat ? 2 : 4;
     int32_t end[2];
     int i, k;
     for (k = 0; k < 2; k++) {
         const double along = (k - 0.5)*pitch;
         end[k] = f->points;
-        if (wires) demi_form_ring(f, axis, n, q, axis ? z : pitch/2, axis ? pitch/2 : z, along);
+        if (wires) demi_draft_ring(f, axis, n, q, axis ? z : pitch/2, axis ? pitch/2 : z, along);
         for (i = 0; i < n && !wires; i++)
-            demi_form_point(f, along, pitch/2 + (i == 0 || i == 3 ? q : -q),
+            demi_draft_point(f, along, pitch/2 + (i == 0 || i == 3 ? q : -q),
                             (i < 2 ? 1 : -1)*(double)s->thickness/2);
     }
-    if (flat) demi_form_quad(f, end[0], end[0] + 1, end[1] + 1, end[1]);
-    else demi_form_band(f, end[0], n, end[1], n);
+    if (flat) demi_draft_quad(f, end[0], end[0] + 1, end[1] + 1, end[1]);
+    else demi_draft_band(f, end[0], n, end[1], n);
     f->step[0] = demi_v((dem_real)pitch, 0, 0);
     f->step[1] = demi_v(0, (dem_real)pitch, 0);
 }
-static void demi_sieve_tessellate(const demi_wall *wall, demi_form *f) {
+static void demi_sieve_tessellate(const demi_wall *wall, demi_draft *f) {
     const dem_sieve_desc *s = &wall->sieve;
     const int endless = s->kind == DEM_SIEVE_SLOTS && !(s->length > 0);
     if (!demi_sieve_wires(s) && !endless) { demi_plate_tessellate(s, f); return; }
@@ -14107,7 +14108,7 @@ static int demi_wall_tessellates(const demi_wall *wall) {
         !(wall->sieve.kind && wall->sieve.radius > 0);
 }
 /* Tessellates a wall with chords of at most `chord`, m. The caller frees *f. */
-static void demi_form_begin(demi_form *f, dem_world *w, const demi_wall *wall, double chord) {
+static void demi_draft_begin(demi_draft *f, dem_world *w, const demi_wall *wall, double chord) {
     memset(f, 0, sizeof *f);
     f->w = w;
     f->per = wall->kind == DEMI_WALL_CYLINDER ? 2 : 3;
@@ -14466,7 +14467,7 @@ static double demi_wall_pace(const dem_world *w, int i) {
 /* Makes the tessellation of a wall for bodies of one scale. They are in the order of walls, then of
    scales. Returns 0 if memory ran out. */
 static int demi_tessellation_make(dem_world *w, int wall, int scale) {
-    demi_form f;
+    demi_draft f;
     demi_wall *s;
     int ok;
     if (!DEMI_GROW(w, w->surfaces, (size_t)w->surface_count + 1)) return 0;
@@ -14474,7 +14475,7 @@ static int demi_tessellation_make(dem_world *w, int wall, int scale) {
          (s[-1].lead > wall || (s[-1].lead == wall && s[-1].scale > 1 + scale)); s--) s[0] = s[-1];
     demi_surface_begin(w, wall, s);
     s->scale = 1 + scale;
-    demi_form_begin(&f, w, &w->walls[wall], 5e-4*ldexp(1, scale - 41));
+    demi_draft_begin(&f, w, &w->walls[wall], 5e-4*ldexp(1, scale - 41));
     s->kind = f.per == 3 ? DEMI_WALL_MESH : DEMI_WALL_PROFILE;
     memcpy(s->step, f.step, sizeof s->step);
     s->vertex_count = f.points;
@@ -14484,7 +14485,7 @@ static int demi_tessellation_make(dem_world *w, int wall, int scale) {
     ok = !f.failed && s->vertices && s->corners;
     if (ok) memcpy(s->vertices, f.x, (size_t)f.points*3*sizeof(dem_real));
     if (ok) memcpy(s->corners, f.corner, (size_t)(f.facets*f.per)*sizeof(int32_t));
-    demi_form_free(&f);
+    demi_draft_free(&f);
     ok = ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
     s->open = w->walls[wall].open;
     return ok;
@@ -18220,6 +18221,8 @@ typedef struct demi_span {
     const int32_t *row;            /* of the table of species, or null */
     const dem_real *coef;          /* columns likewise; row and coef are null if all are alike */
     const int32_t *ball;           /* of clusters: spheres of a, else null */
+    const dem_real *share;         /* of clusters: weights of the pairs */
+    const demi_rows *arm;          /* m, of clusters: centres of the spheres of a, those of b */
     size_t stride;
     int count;
 } demi_span;
@@ -18236,6 +18239,8 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     s.row = w->effects.uniform || demi_many_species(w) ? 0 : near->row + at;
     s.coef = demi_many_species(w) ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
     s.ball = 0;
+    s.share = 0;
+    s.arm = 0;
     s.stride = stride;
     s.count = count;
     return s;
@@ -18667,25 +18672,28 @@ DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
    done, in list order. The order of every sum is thus independent of the number of threads.
    --------------------------------------------------------------------------------------------- */
 
-/* Fills in c->who for pair q. */
+/* Fills in `who` for a law that has desc.law_who set, for bodies a and b; b < 0: wall -1 - b, of
+   which the grains have the radius rb. arm: m, from a's centre to the contact point. */
+static void demi_who_fill(const dem_world *w, int a, int b, dem_real ra, dem_real rb, dem_vec3 arm,
+                          dem_real *rates, dem_contact_who *who) {
+    const demi_periods periods = demi_periods_of(w);
+    who->a = dem_body_id_get(w, a);
+    who->radius_a = ra;
+    who->mass_a = w->bodies.mass[a];
+    who->radius_b = rb;
+    if (b >= 0) who->b = dem_body_id_get(w, b);
+    if (b >= 0) who->mass_b = w->bodies.mass[b];
+    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), arm));
+    who->time = w->clock.time;
+    demi_who_reals(w, a, DEMI_MAX(b, -1), b < 0 ? -1 - b : 0, rates, who);
+}
+/* The same for pair q. */
 static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
                                      dem_real *rates, dem_contact *c) {
-    const dem_world *w = r->w;
-    const int a = r->span->a[q], b = r->span->b[q];
-    const demi_periods periods = demi_periods_of(w);
     const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
-    const dem_vec3 arm = r->span->ball
-        ? demi_at(w->bodies.centre + 4*r->span->ball[q]) : demi_v(0, 0, 0);
-    c->who.a = dem_body_id_get(w, a);
-    c->who.b = dem_body_id_get(w, b);
-    c->who.radius_a = ra;
-    c->who.radius_b = rb;
-    c->who.mass_a = w->bodies.mass[a];
-    c->who.mass_b = w->bodies.mass[b];
-    c->who.point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a), arm),
-        demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb))));
-    c->who.time = w->clock.time;
-    demi_who_reals(w, a, b, 0, rates, &c->who);
+    const dem_vec3 arm = demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb));
+    demi_who_fill(r->w, r->span->a[q], r->span->b[q], ra, rb, r->span->ball ? demi_add(arm,
+        demi_at(r->w->bodies.centre + 4*r->span->ball[q])) : arm, rates, &c->who);
 }
 /* Fills a dem_contact from row q for a user-defined law. */
 DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
@@ -18988,7 +18996,7 @@ static DEMI_APART void demi_tile_flow(const demi_run *r, int count, demi_tile *t
 }
 /* Evaluates a tile with one of two runs, and returns that run. */
 static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
-                                   demi_tile *DEMI_RESTRICT t, double *energy) {
+                                   demi_tile *DEMI_RESTRICT t) {
     const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     demi_run *r = demi_tile_coefs(w, span, full, t, run);
     int q, k;
@@ -19004,30 +19012,29 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
         for (k = span->count/DEMI_LANES*DEMI_LANES; k < span->count; k++)
             memory[k] = t->memory[q][k];
     }
-    if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
-    if (r->ledger) demi_tile_book(t, span->count, energy);
     return r;
 }
 
-/* Results of tiles other than forces: largest relative overlap, number of contacts. */
-typedef struct demi_tally { dem_real deepest, contacts; } demi_tally;
-/* count: without the pairs that pad the last group. */
-static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_tally *sum) {
+/* Adds the contacts of a tile to the number and the largest relative overlap of its work group.
+   ranged: contacts also act across a gap, and those that do so do not count. */
+static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, int ranged,
+                            demi_domain *sum) {
+    dem_real deepest = 0, contacts = 0;
     int q;
     for (q = 0; q < count; q++) {
-        sum->deepest = t->deep[q] > sum->deepest ? t->deep[q] : sum->deepest;
-        sum->contacts += t->touch[q];
+        deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
+        contacts += t->touch[q];
     }
-}
-/* Number of a tile's pairs within the range of the law that do not touch. */
-static int demi_tile_apart(const demi_tile *t, int count) {
-    int q, apart = 0;
-    for (q = 0; q < count; q++) apart += t->touch[q] > 0 && !(t->overlap[q] > 0);
-    return apart;
+    for (q = 0; q < count && ranged; q++) contacts -= t->touch[q] > 0 && !(t->overlap[q] > 0);
+    sum->contacts += (int)contacts;
+    sum->overlap = DEMI_MAX(sum->overlap, (double)deepest);
 }
 DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) {
     x += sum[0]; y += sum[1]; z += sum[2];
     sum[0] = x; sum[1] = y; sum[2] = z;
+}
+DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
+    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
 }
 /* Adds a tile's forces to both bodies. */
 DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
@@ -19053,28 +19060,29 @@ DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
 static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                               const demi_run *r, dem_real *DEMI_RESTRICT force,
                               dem_real *DEMI_RESTRICT torque) {
-    if (r->parting) demi_scatter(t, span, force, torque, 1, 1);
+    if (r->parting || span->ball) demi_scatter(t, span, force, torque, 1, 1);
     else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
     else demi_scatter(t, span, force, torque, 0, 0);
 }
 /* The same for pairs with later work groups: forces on b stay in slots `out`, six reals for each
-   candidate. */
+   candidate. Several pairs of clusters add to one slot, which was cleared before. */
 static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                                const demi_run *r, dem_real *DEMI_RESTRICT force,
                                dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT slots) {
-    const int second = r->parting ? 1 : 0;
+    const int turning = r->turning || span->ball, second = r->parting || span->ball;
     int q;
     for (q = 0; q < span->count; q++) {
         dem_real *out = slots + 6*(size_t)span->k[q];
-        dem_real *fa = DEMI_AT(force, span->a[q]), *ma = DEMI_AT(torque, span->a[q]);
         const dem_vec3 f = demi_row(t->force, q);
-        fa[0] += f.x; fa[1] += f.y; fa[2] += f.z;
-        out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
-        if (r->turning) {
-            const dem_vec3 m = demi_row(t->torque[0], q);
-            ma[0] += m.x; ma[1] += m.y; ma[2] += m.z;
-            demi_put(out + 3, demi_row(t->torque[second], q));
+        demi_force_add(DEMI_AT(force, span->a[q]), f);
+        if (turning) demi_force_add(DEMI_AT(torque, span->a[q]), demi_row(t->torque[0], q));
+        if (span->ball) {
+            demi_force_add(out, demi_scale(f, -1));
+            demi_force_add(out + 3, demi_row(t->torque[1], q));
+            continue;
         }
+        out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
+        if (turning) demi_put(out + 3, demi_row(t->torque[second], q));
     }
 }
 
@@ -19087,11 +19095,12 @@ static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span
     for (q = 0; q < span->count; q++) {
         dem_real *a = w->bodies.rates + n*span->a[q];
         dem_real *b = out ? out + (size_t)n*(size_t)span->k[q] : w->bodies.rates + n*span->b[q];
-        const int touch = t->touch[q] > 0;
+        const int touch = t->touch[q] > 0, sets = out && !span->ball;
+        const dem_real share = span->share ? span->share[q] : 1;
         for (k = 0; k < n; k++) {
-            if (touch) a[k] += t->gains[q][k];
-            if (out) b[k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
-            else if (touch) b[k] += t->gains[q][DEM_BODY_REALS + k];
+            if (touch) a[k] += share*t->gains[q][k];
+            if (sets) b[k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
+            else if (touch) b[k] += share*t->gains[q][DEM_BODY_REALS + k];
         }
     }
 }
@@ -19106,17 +19115,43 @@ DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, de
                       t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
                       (double)t->overlap[q], (double)share);
 }
+/* Vector of row q from the centre of body a to that of b, m. */
+DEM_INLINE dem_vec3 demi_tile_branch(const demi_tile *t, const demi_span *span, int q) {
+    const dem_vec3 gap = demi_rows_at(&t->gap, q);
+    return !span->arm ? gap : demi_add(gap, demi_sub(demi_rows_at(&span->arm[0], q),
+                                                     demi_rows_at(&span->arm[1], q)));
+}
+/* Called for every tile when its forces are known. */
+typedef void (*demi_tile_fn)(dem_world *w, int d, demi_tile *t, const demi_span *span,
+                             const demi_run *r);
+/* Adds what the contacts of a tile give to bodies, or to the slots of bodies of later work groups
+   (send), to the cell, the ledger and the counts of the work group. note: or null. */
+DEM_INLINE void demi_tile_finish(dem_world *w, int d, demi_tile *t, const demi_span *span,
+                                 const demi_run *r, int send, demi_tile_fn note) {
+    const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_domain *domain = &w->domains[d];
+    int q;
+    if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
+    if (r->ledger) demi_tile_book(t, span->count, domain->energy);
+    demi_tile_tally(t, span->count, r->ranged, domain);
+    if (!send) demi_tile_scatter(t, span, r, w->bodies.force, w->bodies.torque);
+    else demi_tile_send(t, span, r, w->bodies.force, w->bodies.torque, w->cross_force);
+    if (demi_exchanges(w)) demi_tile_rates(t, span, w, send ? w->cross_rate : 0);
+    for (q = 0; q < span->count && w->cell.on; q++)
+        if (t->touch[q] > 0)
+            demi_tile_cell(w, t, q, demi_tile_branch(t, span, q), span->share ? span->share[q] : 1,
+                           domain->cell);
+    if (note) note(w, d, t, span, r);
+}
 /* Computes all pairs of a work group: those inside it, then those with later groups. In a world
-   with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the others.
-   note: called for every tile when its forces are known, or null. */
-DEM_INLINE void demi_pairs_with(dem_world *w, int d, void (*note)(dem_world *w, int d, demi_tile *t,
-                                             const demi_span *span, const demi_run *r)) {
+   with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the
+   others. */
+DEM_INLINE void demi_pairs_with(dem_world *w, int d, demi_tile_fn note) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */
     demi_run run[2];
     DEMI_ALIGNED demi_tile tile;
-    demi_tally tally = {0, 0};
-    int l, p, q;
+    int l, p;
     domain->contacts = 0;
     if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
     run[0] = demi_run_of(w, dt, 0);
@@ -19129,20 +19164,9 @@ DEM_INLINE void demi_pairs_with(dem_world *w, int d, void (*note)(dem_world *w, 
         for (p = begin; p < end; p += DEMI_TILE) {
             const int count = DEMI_MIN((int)DEMI_TILE, end - p);
             const demi_span span = demi_span_of(w, d, p, count);
-            const demi_run *r = demi_tile_respond(w, &span, run, &tile, domain->energy);
-            demi_tile_tally(&tile, count, &tally);
-            if (r->ranged) tally.contacts -= (dem_real)demi_tile_apart(&tile, count);
-            if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
-            else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque, w->cross_force);
-            if (demi_exchanges(w)) demi_tile_rates(&tile, &span, w, l ? w->cross_rate : 0);
-            for (q = 0; q < count && w->cell.on; q++)
-                if (tile.touch[q] > 0)
-                    demi_tile_cell(w, &tile, q, demi_rows_at(&tile.gap, q), 1, domain->cell);
-            if (note) note(w, d, &tile, &span, r);
+            demi_tile_finish(w, d, &tile, &span, demi_tile_respond(w, &span, run, &tile), l, note);
         }
     }
-    domain->contacts = (int)tally.contacts;
-    domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
 }
 static void demi_pairs(dem_world *w, int d) { demi_pairs_with(w, d, 0); }
 
@@ -19769,15 +19793,15 @@ static double demi_solid_near(const demi_solid *s, demi_d3 x, demi_d3 *q) {
     }
     return least < 1e299 ? least : inside;
 }
-/* Sets s to polyhedron p scaled so that the ellipsoid `egg` at `at` is the unit sphere about the
+/* Sets s to polyhedron p scaled so that the ellipsoid at `at` is the unit sphere about the
    origin. */
-static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec3 at,
+static void demi_solid_measure(const demi_part *p, const demi_part *ellipsoid, dem_vec3 at,
                                demi_solid *s) {
-    const demi_d3 axes = demi_d3_of(egg->axes);
+    const demi_d3 axes = demi_d3_of(ellipsoid->axes);
     double R[9], back[9];
     int i, k;
     demi_solid_of(p, at, s);
-    demi_rotation_of(egg->q, R);
+    demi_rotation_of(ellipsoid->q, R);
     for (i = 0; i < 9; i++) back[i] = R[i%3*3 + i/3];
     for (i = -1; i < s->corners; i++) {
         demi_d3 *x = i < 0 ? &s->centre : &s->corner[i];
@@ -20516,8 +20540,7 @@ static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, de
             out[count].share = wall->share*(dem_real)how;
             out[count].overlap = r - dist;
             out[count].point = demi_v(d.x*a, d.y*a, b);
-            out[count].normal = dist > 0
-                ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
+            out[count].normal = dist > 0 ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
             count++;
         }
         before = end;
@@ -22604,61 +22627,60 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
 
 /* ---------------------------------------------------------------------------------------------
    >>ellipsoids
-   Contact points of ellipsoids with ellipsoids and spheres ("eggs" in names), a tile of pairs at a
-   time. >>kept asks for pairs in the order of its list. A tile is filled with the next pairs whose
-   bounding spheres overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all
-   of them in vectors. With the parameter of the step before as its start, one iteration is nearly
-   always enough; the other pairs are solved individually. Owns nothing; the tile belongs to the
-   caller.
+   Contact points of ellipsoids with ellipsoids and spheres, a tile of pairs at a time. >>kept asks
+   for pairs in the order of its list. A tile is filled with the next pairs whose bounding spheres
+   overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all of them in
+   vectors. With the parameter of the step before as its start, one iteration is nearly always
+   enough; the other pairs are solved individually. Owns nothing; the tile belongs to the caller.
    --------------------------------------------------------------------------------------------- */
 
 /* True if a body of this shape is an ellipsoid or a sphere (null). */
-DEM_INLINE int demi_egg_is(const demi_shape *shape) {
+DEM_INLINE int demi_ellipsoid_is(const demi_shape *shape) {
     return !shape || (shape->kind == DEMI_ELLIPSOID && !shape->pieces);
 }
 /* True if the scene has ellipsoids. */
-static int demi_eggs_exist(const dem_world *w) {
+static int demi_ellipsoids_exist(const dem_world *w) {
     int k, any = 0;
     for (k = 0; k < w->shape_count; k++) any |= w->shapes[k].kind == DEMI_ELLIPSOID;
     return any;
 }
 /* Pairs of a tile, a multiple of DEMI_LANES; how many entries ahead bodies and contacts are
    prefetched. */
-enum { DEMI_EGGS = 16, DEMI_EGGS_AHEAD = 6 };
+enum { DEMI_MEETS = 16, DEMI_MEETS_AHEAD = 6 };
 /* What one iteration has found: no contact, a contact, or that more iterations are needed. */
-enum { DEMI_EGGS_APART, DEMI_EGGS_FOUND, DEMI_EGGS_OPEN };
+enum { DEMI_MEETS_APART, DEMI_MEETS_FOUND, DEMI_MEETS_OPEN };
 /* A tile of pairs, as a structure of arrays. Sides: 0 body a, 1 body b. */
-typedef struct demi_egg_tile {
-    dem_real q[2][4][DEMI_EGGS], axes[2][3][DEMI_EGGS];        /* orientations; half axes, m */
-    double r[3][DEMI_EGGS];        /* m, from a to b */
-    double equal[2][DEMI_EGGS];    /* m, radii of the spheres of equal volume */
-    double most[DEMI_EGGS];        /* W0^2 beyond which the two are apart */
-    double range[DEMI_EGGS], d[DEMI_EGGS];     /* m: of the law; between the centres */
-    double l[DEMI_EGGS];           /* lambda of the step before, 0: unknown; then the start value */
-    /* results. found: DEMI_EGGS_..., a double, so that all columns have one width; the others as in
-       demi_meet and demi_eggs_keep */
-    double found[DEMI_EGGS];
-    double to[DEMI_EGGS], f[DEMI_EGGS], w0[DEMI_EGGS], both[DEMI_EGGS];
-    double overlap[DEMI_EGGS], slope[DEMI_EGGS], r_eff[DEMI_EGGS], deep[DEMI_EGGS];
-    double s[3][DEMI_EGGS], normal[3][DEMI_EGGS], point[3][DEMI_EGGS];
-    int32_t entry[DEMI_EGGS], from[DEMI_EGGS]; /* of the pruned list; old contact, -1: none */
+typedef struct demi_ellipsoid_tile {
+    dem_real q[2][4][DEMI_MEETS], axes[2][3][DEMI_MEETS];        /* orientations; half axes, m */
+    double r[3][DEMI_MEETS];       /* m, from a to b */
+    double equal[2][DEMI_MEETS];   /* m, radii of the spheres of equal volume */
+    double most[DEMI_MEETS];       /* W0^2 beyond which the two are apart */
+    double range[DEMI_MEETS], d[DEMI_MEETS];     /* m: of the law; between the centres */
+    double l[DEMI_MEETS];          /* lambda of the step before, 0: unknown; then the start value */
+    /* results. found: DEMI_MEETS_..., a double, so that all columns have one width; the others as
+       in demi_meet and demi_ellipsoids_keep */
+    double found[DEMI_MEETS];
+    double to[DEMI_MEETS], f[DEMI_MEETS], w0[DEMI_MEETS], both[DEMI_MEETS];
+    double overlap[DEMI_MEETS], slope[DEMI_MEETS], r_eff[DEMI_MEETS], deep[DEMI_MEETS];
+    double s[3][DEMI_MEETS], normal[3][DEMI_MEETS], point[3][DEMI_MEETS];
+    int32_t entry[DEMI_MEETS], from[DEMI_MEETS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
     const demi_kept *old, *after;  /* first old contact of body a or of a later body; the one after
                                       the last match */
-} demi_egg_tile;
+} demi_ellipsoid_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC push_options
 #pragma GCC optimize("no-trapping-math")
 #endif
-DEM_INLINE void demi_eggs_put(double (*rows)[DEMI_EGGS], int q, demi_d3 a) {
+DEM_INLINE void demi_ellipsoids_put(double (*rows)[DEMI_MEETS], int q, demi_d3 a) {
     rows[0][q] = a.x; rows[1][q] = a.y; rows[2][q] = a.z;
 }
-DEM_INLINE demi_d3 demi_eggs_at(double (*rows)[DEMI_EGGS], int q) {
+DEM_INLINE demi_d3 demi_ellipsoids_at(double (*rows)[DEMI_MEETS], int q) {
     return demi_d(rows[0][q], rows[1][q], rows[2][q]);
 }
 /* The matrix of a side of row q. */
-DEM_INLINE demi_sym demi_egg_matrix(const demi_egg_tile *t, int side, int q) {
+DEM_INLINE demi_sym demi_ellipsoid_row(const demi_ellipsoid_tile *t, int side, int q) {
     return demi_ellipsoid_matrix(
         dem_quat_make(t->q[side][0][q], t->q[side][1][q], t->q[side][2][q], t->q[side][3][q]),
         demi_v(t->axes[side][0][q], t->axes[side][1][q], t->axes[side][2][q]));
@@ -22666,7 +22688,7 @@ DEM_INLINE demi_sym demi_egg_matrix(const demi_egg_tile *t, int side, int q) {
 /* Stores the contact point of row q. At that point both scaled distances are W0, so the support
    heights are h_A = W0/((1 - l) |s|) and h_B = W0/(l |s|); both: their sum. The overlap is the
    conservative one. */
-DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet m) {
+DEM_INLINE void demi_ellipsoids_keep(demi_ellipsoid_tile *DEMI_RESTRICT t, int q, demi_meet m) {
     const double w0 = sqrt(m.f), per = 1/demi_d3_length(m.s), least = m.l < 0.5 ? m.l : 1 - m.l;
     const double radii = t->equal[0][q] + t->equal[1][q];
     t->to[q] = m.l;
@@ -22677,16 +22699,16 @@ DEM_INLINE void demi_eggs_keep(demi_egg_tile *DEMI_RESTRICT t, int q, demi_meet 
     t->slope[q] = radii/t->both[q];
     t->r_eff[q] = t->equal[0][q]*t->equal[1][q]/radii;
     t->deep[q] = (1 - w0)/least;
-    demi_eggs_put(t->s, q, m.s);
-    demi_eggs_put(t->normal, q, demi_d3_scale(m.s, per));
-    demi_eggs_put(t->point, q, demi_d3_scale(m.a, 1 - m.l));
+    demi_ellipsoids_put(t->s, q, m.s);
+    demi_ellipsoids_put(t->normal, q, demi_d3_scale(m.s, per));
+    demi_ellipsoids_put(t->point, q, demi_d3_scale(m.a, 1 - m.l));
 }
 /* One iteration for row q. It ends as the first of demi_meet_solve does. Without a start value, the
    plane normal to the line of centres is tried first: W0 >= d/(h_A + h_B), with the support heights
    along that line, so if the plane separates the two, they are apart. */
-DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
-    const demi_sym A = demi_egg_matrix(t, 0, q), B = demi_egg_matrix(t, 1, q);
-    const demi_d3 r = demi_eggs_at(t->r, q);
+DEM_INLINE void demi_ellipsoids_solve_one(demi_ellipsoid_tile *DEMI_RESTRICT t, int q) {
+    const demi_sym A = demi_ellipsoid_row(t, 0, q), B = demi_ellipsoid_row(t, 1, q);
+    const demi_d3 r = demi_ellipsoids_at(t->r, q);
     const double ha = demi_sym_height(A, r), hb = demi_sym_height(B, r);
     const int fresh = !(t->l[q] > 0);
     const int apart = fresh & (demi_d3_square(r) - (ha + hb) > t->range[q]*t->d[q]);
@@ -22700,19 +22722,20 @@ DEM_INLINE void demi_eggs_solve_one(demi_egg_tile *DEMI_RESTRICT t, int q) {
     out = m.f > t->most[q];
     still = !out & (m.fa + m.fb > 0) & (fabs(m.u) < DEMI_MEET_NEAR);
     if (still) m = n;
-    demi_eggs_keep(t, q, m);
-    t->found[q] = apart ? (double)DEMI_EGGS_APART
-        : still | out ? (double)DEMI_EGGS_FOUND : (double)DEMI_EGGS_OPEN;
+    demi_ellipsoids_keep(t, q, m);
+    t->found[q] = apart ? (double)DEMI_MEETS_APART
+        : still | out ? (double)DEMI_MEETS_FOUND : (double)DEMI_MEETS_OPEN;
 }
-DEMI_CLONES static void demi_eggs_solve(demi_egg_tile *DEMI_RESTRICT t, int full) {
-    DEMI_ROWS(full) demi_eggs_solve_one(t, q); DEMI_ROWS_END
+DEMI_CLONES static void demi_ellipsoids_solve(demi_ellipsoid_tile *DEMI_RESTRICT t, int full) {
+    DEMI_ROWS(full) demi_ellipsoids_solve_one(t, q); DEMI_ROWS_END
 }
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
 
 /* Puts one side into row k of a tile. Returns its least half axis, m. */
-DEM_INLINE dem_real demi_egg_put(demi_egg_tile *t, int k, int side, dem_quat q, dem_vec3 axes) {
+DEM_INLINE dem_real demi_ellipsoid_put(demi_ellipsoid_tile *t, int k, int side, dem_quat q,
+                                       dem_vec3 axes) {
     t->q[side][0][k] = q.w; t->q[side][1][k] = q.x;
     t->q[side][2][k] = q.y; t->q[side][3][k] = q.z;
     t->axes[side][0][k] = axes.x; t->axes[side][1][k] = axes.y; t->axes[side][2][k] = axes.z;
@@ -22720,10 +22743,10 @@ DEM_INLINE dem_real demi_egg_put(demi_egg_tile *t, int k, int side, dem_quat q, 
 }
 /* Puts all but the two bodies into row k. gap: m, from a to b; lambda: of the step before, 0:
    unknown; range: m, of the law; thin: sum of the least half axes, m. */
-DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lambda, double range,
-                              dem_real thin) {
+DEM_INLINE void demi_ellipsoids_row(demi_ellipsoid_tile *t, int k, dem_vec3 gap, double lambda,
+                                    double range, dem_real thin) {
     const double most = range > 0 ? 1 + range/(double)thin : 1;
-    demi_eggs_put(t->r, k, demi_d3_of(gap));
+    demi_ellipsoids_put(t->r, k, demi_d3_of(gap));
     if (!(demi_dot(gap, gap) > 0)) t->r[2][k] = 1e-9*(double)thin;
     t->l[k] = lambda;
     t->most[k] = most*most;
@@ -22731,17 +22754,19 @@ DEM_INLINE void demi_eggs_row(demi_egg_tile *t, int k, dem_vec3 gap, double lamb
     t->d[k] = range > 0 ? demi_d3_length(demi_d3_of(gap)) : 0;
 }
 /* Puts a body into row k: an ellipsoid, or a sphere, which has three equal axes. */
-DEM_INLINE dem_real demi_egg_body_put(const dem_world *w, demi_egg_tile *t, int k, int side,
-                                      int body, const demi_shape *shape) {
+DEM_INLINE dem_real demi_ellipsoid_body_put(const dem_world *w, demi_ellipsoid_tile *t, int k,
+                                            int side, int body, const demi_shape *shape) {
     const dem_real radius = demi_radius(w, body), scale = shape ? radius/shape->radius : 0;
     t->equal[side][k] = (double)(shape ? shape->equal*scale : radius);
     if (!shape)
-        return demi_egg_put(t, k, side, dem_quat_make(1, 0, 0, 0), demi_v(radius, radius, radius));
-    return demi_egg_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
-                        demi_scale(shape->axes, scale));
+        return demi_ellipsoid_put(t, k, side, dem_quat_make(1, 0, 0, 0),
+                                  demi_v(radius, radius, radius));
+    return demi_ellipsoid_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
+                              demi_scale(shape->axes, scale));
 }
 /* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
-DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *last, int a, int b) {
+DEM_INLINE const demi_kept *demi_ellipsoids_old(demi_ellipsoid_tile *t, const demi_kept *last,
+                                                int a, int b) {
     const demi_kept *o;
     while (t->old < last && t->old->a < a) t->after = ++t->old;
     for (o = t->after; o < last && o->a == a && o->b != b;) o++;
@@ -22753,12 +22778,13 @@ DEM_INLINE const demi_kept *demi_eggs_old(demi_egg_tile *t, const demi_kept *las
 }
 /* Fills a tile with pairs of ellipsoids among entries p .. end - 1 of the pruned list of work group
    d, and does one iteration for all of them. */
-static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_egg_tile *t) {
+static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
+                                             demi_ellipsoid_tile *t) {
     const int base = d*w->near.stride;
     const demi_kept *now = demi_kept_of(w, d), *last = now + w->domains[d].kept, *o;
     int k;
     t->count = t->next = 0;
-    for (; p < end && t->count < DEMI_EGGS; p++) {
+    for (; p < end && t->count < DEMI_MEETS; p++) {
         const int a = w->near.a[base + p], b = w->near.b[base + p];
         const size_t at = (size_t)(base + p);
         const dem_vec3 r = demi_near_level(w, at, demi_near_bodies_way(w, at));
@@ -22766,55 +22792,55 @@ static DEMI_APART void demi_eggs_find(dem_world *w, int d, int p, int end, demi_
         const dem_real far = radii + (dem_real)w->margin.reach;
         const demi_shape *one, *other;
         dem_real thin;
-        if (p + DEMI_EGGS_AHEAD < end) {
-            const int next = w->near.b[base + p + DEMI_EGGS_AHEAD];
+        if (p + DEMI_MEETS_AHEAD < end) {
+            const int next = w->near.b[base + p + DEMI_MEETS_AHEAD];
             DEMI_FETCH(w->bodies.pos + 4*next);
             DEMI_FETCH(w->bodies.orient + 4*next);
         }
         if (!(demi_dot(r, r) < far*far)) continue;
         one = demi_shape_of(w, a);
         other = demi_shape_of(w, b);
-        if ((!one && !other) || !demi_egg_is(one) || !demi_egg_is(other)) continue;
+        if ((!one && !other) || !demi_ellipsoid_is(one) || !demi_ellipsoid_is(other)) continue;
         k = t->count++;
-        o = demi_eggs_old(t, last, a, b);
-        if (t->after + DEMI_EGGS_AHEAD < last) DEMI_FETCH(t->after + DEMI_EGGS_AHEAD);
+        o = demi_ellipsoids_old(t, last, a, b);
+        if (t->after + DEMI_MEETS_AHEAD < last) DEMI_FETCH(t->after + DEMI_MEETS_AHEAD);
         t->entry[k] = p;
         t->from[k] = o ? (int32_t)(o - now) : -1;
-        thin = demi_egg_body_put(w, t, k, 0, a, one);
-        thin += demi_egg_body_put(w, t, k, 1, b, other);
-        demi_eggs_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);
+        thin = demi_ellipsoid_body_put(w, t, k, 0, a, one);
+        thin += demi_ellipsoid_body_put(w, t, k, 1, b, other);
+        demi_ellipsoids_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);
     }
     t->end = p;
     for (k = t->count; k%DEMI_LANES; k++) {     /* copies of two spheres pad the last group */
-        demi_egg_put(t, k, 0, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
-        demi_egg_put(t, k, 1, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
+        demi_ellipsoid_put(t, k, 0, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
+        demi_ellipsoid_put(t, k, 1, dem_quat_make(1, 0, 0, 0), demi_v(1, 1, 1));
         t->equal[0][k] = t->equal[1][k] = 1;
-        demi_eggs_row(t, k, demi_v(1, 0, 0), 0, 0, 1);
+        demi_ellipsoids_row(t, k, demi_v(1, 0, 0), 0, 0, 1);
     }
-    if (t->count) demi_eggs_solve(t, k);
+    if (t->count) demi_ellipsoids_solve(t, k);
 }
 /* Returns 1 if the pair of row k touches or is within the range of the law; its contact point is
    then complete. If the two are apart, their gap is taken as d (1 - 1/W0), the distance of the two
    surface points that coincide when both are scaled by W0. It is never less than the true distance,
    which the candidate lists use. */
-static int demi_eggs_meet(demi_egg_tile *t, int k) {
+static int demi_ellipsoids_meet(demi_ellipsoid_tile *t, int k) {
     demi_meet m;
-    if (!(t->found[k] > (double)DEMI_EGGS_APART)) return 0;
-    if (t->found[k] > (double)DEMI_EGGS_FOUND) {
+    if (!(t->found[k] > (double)DEMI_MEETS_APART)) return 0;
+    if (t->found[k] > (double)DEMI_MEETS_FOUND) {
         m.l = t->l[k];
-        demi_meet_solve(demi_egg_matrix(t, 0, k), demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k),
-                        t->most[k], DEMI_MEET_NEAR, &m);
-        demi_eggs_keep(t, k, m);
+        demi_meet_solve(demi_ellipsoid_row(t, 0, k), demi_ellipsoid_row(t, 1, k),
+                        demi_ellipsoids_at(t->r, k), t->most[k], DEMI_MEET_NEAR, &m);
+        demi_ellipsoids_keep(t, k, m);
     }
     return t->f[k] < 1 || (t->range[k] > 0 && t->d[k]*(1 - 1/t->w0[k]) < t->range[k]);
 }
 /* Returns the overlap of [RUB15] 3.2 for row k, m. Evaluates the function once more: with K^-1 QB s
    from before the last step of l, the error would be of the order of this step. */
-static double demi_eggs_chord(demi_egg_tile *t, int k) {
-    const demi_sym A = demi_egg_matrix(t, 0, k);
+static double demi_ellipsoids_chord(demi_ellipsoid_tile *t, int k) {
+    const demi_sym A = demi_ellipsoid_row(t, 0, k);
     demi_meet m;
     m.l = t->to[k];
-    demi_meet_at(A, demi_egg_matrix(t, 1, k), demi_eggs_at(t->r, k), &m);
+    demi_meet_at(A, demi_ellipsoid_row(t, 1, k), demi_ellipsoids_at(t->r, k), &m);
     return demi_meet_chord(&m, A);
 }
 
@@ -23415,10 +23441,10 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
 }
 /* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
    be a sphere. p, q: the two; not read if the overlap is the conservative one. */
-DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const demi_part *p,
-                              const demi_part *q, demi_kept *c) {
+DEM_INLINE void demi_ellipsoids_set(const dem_world *w, demi_ellipsoid_tile *t, int k,
+                                    const demi_part *p, const demi_part *q, demi_kept *c) {
     c->lambda = t->to[k];
-    c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
+    c->normal = demi_d3_real(demi_ellipsoids_at(t->normal, k));
     c->deep = (dem_real)t->deep[k];
     c->overlap = (dem_real)t->overlap[k];
     c->r_eff = (dem_real)t->r_eff[k];
@@ -23429,23 +23455,23 @@ DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const
         c->r_eff = (dem_real)(ra*rb/(ra + rb));
         /* across a gap there is no chord */
         c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD && t->w0[k] < 1
-            ? demi_eggs_chord(t, k) : (1 - t->w0[k])*both);
+            ? demi_ellipsoids_chord(t, k) : (1 - t->w0[k])*both);
     }
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
                                  demi_spots *spots) {
-    demi_egg_tile t;
-    dem_real thin = demi_egg_put(&t, 0, 0, p->q, demi_part_axes(p));
+    demi_ellipsoid_tile t;
+    dem_real thin = demi_ellipsoid_put(&t, 0, 0, p->q, demi_part_axes(p));
     (void)spots;
-    thin += demi_egg_put(&t, 0, 1, q->q, demi_part_axes(q));
+    thin += demi_ellipsoid_put(&t, 0, 1, q->q, demi_part_axes(q));
     t.equal[0][0] = demi_part_equal(p);
     t.equal[1][0] = demi_part_equal(q);
-    demi_eggs_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
-    demi_eggs_solve_one(&t, 0);
-    if (!demi_eggs_meet(&t, 0)) return 0;
-    demi_eggs_set(w, &t, 0, p, q, c);
-    c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
+    demi_ellipsoids_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
+    demi_ellipsoids_solve_one(&t, 0);
+    if (!demi_ellipsoids_meet(&t, 0)) return 0;
+    demi_ellipsoids_set(w, &t, 0, p, q, c);
+    c->arm_a = demi_add(p->centre, demi_d3_real(demi_ellipsoids_at(t.point, 0)));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
@@ -23455,8 +23481,8 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
    is l (1 - W0), where l includes `edge`, or is measured along the normal. The arm leads to the
    deepest point, as for a sphere. The gradient of l (1 - W0) passes through the point of the wall,
    at W0 times the arm. */
-static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real left, dem_real edge,
-                             demi_kept *c) {
+static void demi_ellipsoid_overlap(const dem_world *w, const demi_part *p, dem_real left,
+                                   dem_real edge, demi_kept *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
     c->overlap = left*(h + edge);
     c->deep = c->overlap/h;
@@ -23490,8 +23516,7 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
     c->overlap = ball->radius - (dem_real)off;
     if (!(c->overlap > -demi_range(w, p->radius + q->radius))) return 0;
     c->normal = demi_d3_real(at);
-    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
-                                   : demi_unit(gap);
+    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off)) : demi_unit(gap);
     c->deep = c->overlap/ball->radius;
     c->r_eff = ball->radius;
     c->arm_a = demi_d3_real(at);
@@ -23503,27 +23528,27 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
 }
 /* An ellipsoid and a polyhedron, as with walls: at the point that the ellipsoid touches first when
    it is scaled, by W0. */
-static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                 dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_ELLIPSOID;
-    const demi_part *egg = first ? p : q;
+    const demi_part *ellipsoid = first ? p : q;
     dem_vec3 at, n;
     demi_d3 near;
     double W0;
     demi_solid s;
-    demi_solid_measure(first ? q : p, egg, first ? gap : demi_scale(gap, -1), &s);
+    demi_solid_measure(first ? q : p, ellipsoid, first ? gap : demi_scale(gap, -1), &s);
     W0 = demi_solid_near(&s, demi_d(0, 0, 0), &near);
-    if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(egg)))
+    if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(ellipsoid)))
         return 0;
     at = demi_d3_real(near);
-    n = demi_v(at.x/egg->axes.x, at.y/egg->axes.y, at.z/egg->axes.z);
-    at = demi_v(at.x*egg->axes.x, at.y*egg->axes.y, at.z*egg->axes.z);
+    n = demi_v(at.x/ellipsoid->axes.x, at.y/ellipsoid->axes.y, at.z/ellipsoid->axes.z);
+    at = demi_v(at.x*ellipsoid->axes.x, at.y*ellipsoid->axes.y, at.z*ellipsoid->axes.z);
     if (W0 > 1 && !((double)demi_length(at)*(1 - 1/W0) <
                     (double)demi_range(w, p->radius + q->radius))) return 0;
-    c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
-    demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
+    c->normal = demi_unit(dem_quat_rotate(ellipsoid->q, W0 < 0 ? demi_scale(n, -1) : n));
+    demi_ellipsoid_overlap(w, ellipsoid, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
-    c->arm_a = dem_quat_rotate(egg->q, at);
+    c->arm_a = dem_quat_rotate(ellipsoid->q, at);
     demi_kept_odd(c)->outset = demi_v(0, 0, 0);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
@@ -23535,7 +23560,7 @@ static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const 
                                   dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
     const int ball = p->kind == DEMI_BALL || q->kind == DEMI_BALL;
     (void)lambda; (void)spots;
-    if (!(ball ? demi_solid_ball_touch : demi_solid_egg_touch)(w, p, q, gap, c)) return 0;
+    if (!(ball ? demi_solid_ball_touch : demi_solid_ellipsoid_touch)(w, p, q, gap, c)) return 0;
     c->arm_a = demi_add(c->arm_a, p->centre);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
@@ -23620,8 +23645,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
     overlap = (w->desc.planar ? demi_prisms_press : demi_solids_press)(&a, &b, &s) &&
-        demi_pressure_patch(&s, &p->q, &q->q, &at)
-        ? demi_shared_overlap(s.shared, r_eff) : 0;
+        demi_pressure_patch(&s, &p->q, &q->q, &at) ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;
     c->overlap = (dem_real)overlap;
@@ -23672,8 +23696,8 @@ DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, con
 /* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
 static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                    const demi_touching *place, demi_kept *c) {
-    demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
-                     c);
+    demi_ellipsoid_overlap(w, p, place->overlap,
+                           demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0), c);
     c->arm_a = demi_add(p->centre, c->arm_a);
 }
 /* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
@@ -24238,11 +24262,11 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
 }
 /* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch: row k of a
    tile. It is the only contact of its pair, so all its weights are 1. */
-static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int send) {
+static void demi_kept_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, int k, int send) {
     const int at = d*w->near.stride + t->entry[k];
     demi_part p, q;
     demi_kept *c;
-    if (!demi_eggs_meet(t, k)) return;
+    if (!demi_ellipsoids_meet(t, k)) return;
     c = demi_kept_new(w, d);
     if (!c) return;
     demi_kept_ahead(c, 2, 1);
@@ -24256,8 +24280,8 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);
     }
-    demi_eggs_set(w, t, k, &p, &q, c);
-    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
+    demi_ellipsoids_set(w, t, k, &p, &q, c);
+    c->arm_a = demi_d3_real(demi_ellipsoids_at(t->point, k));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a,
                         demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at)));
@@ -24285,10 +24309,11 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, con
 }
 /* Finds the contacts of entry p of the pruned list of work group d: of ellipsoids from tile t,
    which is filled again, before `end`, when it is used up; those of others individually. */
-DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send, demi_egg_tile *t,
-                                const demi_kept *old, int olds) {
-    if (p >= t->end) demi_eggs_find(w, d, p, end, t);
-    if (t->next < t->count && t->entry[t->next] == p) demi_kept_eggs(w, d, t, t->next++, send);
+DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send,
+                                demi_ellipsoid_tile *t, const demi_kept *old, int olds) {
+    if (p >= t->end) demi_ellipsoids_find(w, d, p, end, t);
+    if (t->next < t->count && t->entry[t->next] == p)
+        demi_kept_ellipsoids(w, d, t, t->next++, send);
     else demi_kept_pair(w, d, d*w->near.stride + p, send, old, olds);
 }
 
@@ -24306,8 +24331,7 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
             demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
         if (old[e].b >= 0 || !demi_kept_one(w, &old[e], c) || old[e].part_a != c->part_a ||
-            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5))
-            continue;
+            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5)) continue;
         for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
         if (i == count) c->deep = 2 - c->deep;
     }
@@ -24315,7 +24339,8 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
 /* True if contact point `place` of part p, whose centre is at `at`, overlaps or is within the range
    of the law. Contact points of other shapes are found only within that range. For an ellipsoid the
    gap is the distance from its surface to the point, measured on the ray from its centre. For a
-   grain of a wall it is that of two ellipsoids (demi_eggs_meet), measured to the grain's centre. */
+   grain of a wall it is that of two ellipsoids (demi_ellipsoids_meet), measured to the grain's
+   centre. */
 static int demi_place_near(const dem_world *w, const demi_wall *wall, const demi_part *p,
                            dem_vec3 at, const demi_touching *place) {
     const dem_real scale = 1 - place->overlap;
@@ -24577,9 +24602,9 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
-    const int eggs = demi_eggs_exist(w);
-    demi_egg_tile own, cross;
-    own.end = cross.end = eggs ? 0 : INT_MAX;
+    const int ellipsoids = demi_ellipsoids_exist(w);
+    demi_ellipsoid_tile own, cross;
+    own.end = cross.end = ellipsoids ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
     own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;
@@ -24774,22 +24799,13 @@ static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
     return demi_part_now(w, k->a, k->part_a).radius +
         (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
 }
-/* Fills in `who` for a law that has desc.law_who set. */
+/* Fills in `who` for a persistent contact. */
 static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rates,
                           dem_contact_who *who) {
-    const demi_periods periods = demi_periods_of(w);
-    who->a = dem_body_id_get(w, k->a);
-    who->radius_a = demi_part_now(w, k->a, k->part_a).radius;
-    who->mass_a = w->bodies.mass[k->a];
-    if (k->b >= 0) {
-        who->b = dem_body_id_get(w, k->b);
-        who->radius_b = demi_part_now(w, k->b, k->part_b).radius;
-        who->mass_b = w->bodies.mass[k->b];
-    } else if (demi_wall_is(&w->walls[k->wall], DEMI_BALLS))
-        who->radius_b = w->walls[k->wall].radius;
-    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*k->a), k->arm_a));
-    who->time = w->clock.time;
-    demi_who_reals(w, k->a, k->b, k->wall, rates, who);
+    const dem_real radius = k->b >= 0 ? demi_part_now(w, k->b, k->part_b).radius
+        : demi_wall_is(&w->walls[k->wall], DEMI_BALLS) ? w->walls[k->wall].radius : 0;
+    demi_who_fill(w, k->a, k->b < 0 ? -1 - k->wall : k->b, demi_part_now(w, k->a, k->part_a).radius,
+                  radius, k->arm_a, rates, who);
 }
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC push_options
@@ -25055,29 +25071,30 @@ static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run 
     c->user = w->desc.law_user;
     if (w->desc.law_who) demi_kept_who(w, k, t->rows.gains[q], &c->who);
 }
-/* Evaluates laws contact by contact: a user-defined law, or built-in laws for a few contacts. */
-static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
+/* Calls the law for row q of a tile. still: null, or where only the elastic force goes: the contact
+   is at rest then, and keeps its history. */
+static void demi_row_law(const dem_world *w, demi_tile *t, const demi_run *r, int q, dem_contact *c,
+                         dem_real *still) {
     dem_real m[DEMI_MEMORY];
     dem_contact_force f;
+    if (still) c->closing_speed = 0;
+    demi_recall(t, q, 0, r->keep, m);
+    demi_law(w, c, m, &f);
+    if (still) { *still = f.normal; return; }
+    demi_keep(t, q, 0, r->keep, m);
+    demi_normal_put(t, &r->same, q, &f, 2);
+    demi_tangent_put(t, &r->same, q, &f, 2);
+    demi_rolling_put(t, &r->same, q, &f, 2);
+}
+/* Evaluates laws contact by contact: a user-defined law, or built-in laws for a few contacts. */
+static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
     dem_contact c;
-    int q;
-    for (q = 0; q < t->count; q++) {
-        t->still[q] = 0;
-        if (demi_kept_lifted(t->contact[q])) {  /* at rest, with a copy of its history */
+    int q, rests;
+    for (q = 0; q < t->count; q++)
+        for (t->still[q] = 0, rests = demi_kept_lifted(t->contact[q]); rests >= 0; rests--) {
             demi_kept_see(w, t, r, q, &c);
-            demi_recall(&t->rows, q, 0, r->keep, m);
-            c.closing_speed = 0;
-            demi_law(w, &c, m, &f);
-            t->still[q] = f.normal;
+            demi_row_law(w, &t->rows, r, q, &c, rests ? &t->still[q] : 0);
         }
-        demi_kept_see(w, t, r, q, &c);
-        demi_recall(&t->rows, q, 0, r->keep, m);
-        demi_law(w, &c, m, &f);
-        demi_keep(&t->rows, q, 0, r->keep, m);
-        demi_normal_put(&t->rows, &r->same, q, &f, 2);
-        demi_tangent_put(&t->rows, &r->same, q, &f, 2);
-        demi_rolling_put(&t->rows, &r->same, q, &f, 2);
-    }
 }
 /* Evaluates the normal law at zero closing speed: the elastic force alone, N. History is
    restored. */
@@ -25096,9 +25113,6 @@ static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
         t->rows.closing[q] = closing[q];
         for (e = at; e < r->keep; e++) t->rows.memory[e][q] = memory[e][q];
     }
-}
-DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
-    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
 }
 /* Adds a force and a moment on a body at point `at` to the sums of its wall, with opposite sign.
    surface: velocity of the wall there, m/s. */
@@ -25507,8 +25521,7 @@ static void demi_member_coefs(const dem_world *w, demi_member_tile *m, int d, in
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
         dem_real *to = e == DEMI_CN ? m->base[0] : e == DEMI_CT ? m->base[1]
             : e == DEMI_CN_ROOT ? m->base[2] : e == DEMI_CT_ROOT ? m->base[3]
-            : e == DEMI_M_EFF ? m->base[4]
-            : m->t.rows.coef[e];
+            : e == DEMI_M_EFF ? m->base[4] : m->t.rows.coef[e];
         const dem_real *own = demi_many_species(w) ? w->near.coef +
             (base*DEMI_PAIR_COLUMNS + (size_t)e*stride) : 0;
         const dem_real *table = w->species_coef + e;
@@ -25597,33 +25610,17 @@ DEMI_CLONES static void demi_member_weigh(demi_kept_tile *DEMI_RESTRICT t, int f
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
-/* Calls the user-defined law for each contact of a tile, once more at zero closing speed for the
-   elastic force of merged contacts. */
+/* Calls the user-defined law for each contact of a tile, first at rest for merged contacts. */
 static void demi_member_law(const dem_world *w, demi_member_tile *m) {
-    demi_tile *rows = &m->t.rows;
     const demi_same same = m->run.same;
-    dem_real memory[DEMI_MEMORY];
-    dem_contact_force f;
     dem_contact c;
-    int q, again;
+    int q, rests;
     demi_who_clear(&c.who);
     for (q = 0; q < m->count; q++)
-        for (again = m->merged[q]; again >= 0; again--) {
-            demi_tile_own(rows, &m->run, &same, q, w->desc.law_who, &c);
-            if (again) c.closing_speed = 0;
-            demi_recall(rows, q, 0, m->run.keep, memory);
-            demi_law(w, &c, memory, &f);
-            if (again) { m->t.still[q] = f.normal; continue; }
-            demi_keep(rows, q, 0, m->run.keep, memory);
-            demi_normal_put(rows, &same, q, &f, 2);
-            demi_tangent_put(rows, &same, q, &f, 2);
-            demi_rolling_put(rows, &same, q, &f, 2);
+        for (rests = m->merged[q]; rests >= 0; rests--) {
+            demi_tile_own(&m->t.rows, &m->run, &same, q, w->desc.law_who, &c);
+            demi_row_law(w, &m->t.rows, &m->run, q, &c, rests ? &m->t.still[q] : 0);
         }
-}
-/* Vector, m, from the centre of body a to that of b. */
-DEM_INLINE dem_vec3 demi_member_branch(const demi_member_tile *m, int q) {
-    return demi_add(demi_rows_at(&m->t.rows.gap, q),
-                    demi_sub(demi_rows_at(&m->t.arm[0], q), demi_rows_at(&m->t.arm[1], q)));
 }
 /* Evaluates the contacts of a tile: forces and torques about the centres of the spheres. */
 static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d) {
@@ -25641,7 +25638,7 @@ static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d)
     if (r->following) demi_member_fetch(w, m, base, full, 1);
     else demi_member_fetch(w, m, base, full, 0);
     for (q = 0; q < full && w->cell.on; q++) {
-        const dem_vec3 branch = demi_member_branch(m, q);
+        const dem_vec3 branch = demi_tile_branch(rows, &m->span, q);
         demi_rows_flow(w, &rows->rate, q, branch);
         if (r->following) demi_rows_flow(w, &rows->gone, q, branch);
     }
@@ -25680,22 +25677,13 @@ static void demi_member_begin(const dem_world *w, demi_member_tile *m, int d, de
     m->span.b = m->b;
     m->span.k = m->k;
     m->span.ball = m->ball[0];
+    m->span.share = m->t.share;
+    m->span.arm = m->t.arm;
     demi_member_clear(m);
     demi_tile_begin(w, d, &m->t.rows);
     m->p[0] = demi_near_first(&w->domains[d]);
     demi_member_coefs(w, m, d, DEMI_TILE, 1);
     memset(m->t.rows.moment, 0, sizeof m->t.rows.moment);
-}
-/* Adds the rates of user-defined numbers of row q to both bodies. */
-static DEMI_APART void demi_member_rates(dem_world *w, const demi_member_tile *m, int q, int send) {
-    const int n = w->bodies.real_count;
-    dem_real *b = send ? w->cross_rate + (size_t)n*(size_t)m->k[q] : w->bodies.rates + n*m->b[q];
-    int k;
-    for (k = 0; k < n; k++) {
-        const dem_real *gains = m->t.rows.gains[q];
-        w->bodies.rates[n*m->a[q] + k] += m->t.share[q]*gains[k];
-        b[k] += m->t.share[q]*gains[DEM_BODY_REALS + k];
-    }
 }
 /* Turns the torques of a tile about the centres of its spheres into those on the bodies. */
 DEMI_CLONES static void demi_member_torques(demi_member_tile *DEMI_RESTRICT m, int turning,
@@ -25713,40 +25701,17 @@ DEMI_CLONES static void demi_member_torques(demi_member_tile *DEMI_RESTRICT m, i
 /* Evaluates a tile, adds its forces to both bodies and stores its histories. send: 1 if the bodies
    b are of later work groups, so that forces on them go to slots. */
 static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int send) {
-    demi_domain *domain = &w->domains[d];
-    demi_tile *rows = &m->t.rows;
     const size_t stride = (size_t)w->near.stride;
-    dem_real *DEMI_RESTRICT force = w->bodies.force, *DEMI_RESTRICT torque = w->bodies.torque;
-    const int full = (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    demi_tally tally = {0, 0};
     int q, e;
     if (!m->count) return;
     demi_member_evaluate(w, m, d);
-    demi_member_torques(m, m->run.turning, full);
-    if (!send) demi_scatter(rows, &m->span, force, torque, 1, 1);
-    for (q = 0; q < m->count && send; q++) {
-        dem_real *slot = w->cross_force + 6*(size_t)m->k[q];
-        const dem_vec3 f = demi_row(rows->force, q);
-        demi_force_add(force + 4*m->a[q], f);
-        demi_force_add(torque + 4*m->a[q], demi_row(rows->torque[0], q));
-        demi_force_add(slot, demi_scale(f, -1));
-        demi_force_add(slot + 3, demi_row(rows->torque[1], q));
-    }
-    for (q = 0; q < m->count && demi_exchanges(w); q++) demi_member_rates(w, m, q, send);
+    demi_member_torques(m, m->run.turning, (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES);
     for (e = 0; e < m->run.keep; e++) {
         dem_real *memory = w->near.memory + ((size_t)d*(size_t)w->memory_stride + (size_t)e)*stride;
-        for (q = 0; q < m->count; q++) memory[m->p[q]] = rows->memory[e][q];
+        for (q = 0; q < m->count; q++) memory[m->p[q]] = m->t.rows.memory[e][q];
     }
-    for (q = 0; q < m->count && w->cell.on; q++)
-        if (rows->touch[q] > 0)
-            demi_tile_cell(w, rows, q, demi_member_branch(m, q), m->t.share[q], domain->cell);
-    demi_tile_tally(rows, m->count, &tally);
-    if (m->run.ranged) tally.contacts -= (dem_real)demi_tile_apart(rows, m->count);
-    domain->contacts += (int)tally.contacts;
-    domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
-    if (m->run.ledger && w->bodies.booked) demi_tile_late(w, &m->span, full, rows);
-    if (m->run.ledger) demi_tile_book(rows, m->count, domain->energy);
-    if (w->events.n.on) demi_tile_note(w, d, rows, &m->span, &m->run);
+    demi_tile_finish(w, d, &m->t.rows, &m->span, &m->run, send,
+                     w->events.n.on ? demi_tile_note : 0);
     if (m->weighted) demi_member_clear(m);
     m->count = 0;
 }
@@ -26014,7 +25979,7 @@ static void demi_movers_lay(dem_world *w, int d) {
 typedef struct demi_rod {
     int32_t a, b, rows;            /* solver bodies; number of rows, 0: not in force */
     int32_t next[2];               /* next joint of a, and of b, see demi_solver.joined; -1: none */
-    int32_t knot, ends[2];         /* nodes of the joint, and of a and b; -1: prescribed motion */
+    int32_t node, ends[2];         /* nodes of the joint, and of a and b; -1: prescribed motion */
     int32_t stuck;                 /* sign of the torque of a motor at its limit; 0: below it */
     dem_vec3 arm[2];               /* m, lever arms from the centres of a and b */
     dem_vec3 along[3];             /* unit axes of the spin rows: two across the hinge, its own */
@@ -26024,7 +25989,7 @@ typedef struct demi_rod {
     dem_real most, torque;         /* N m s: limit of a motor of speed; impulse of one of torque */
 } demi_rod;
 /* Node of the linear system of all joints: a movable body with joints, or a joint in force. */
-typedef struct demi_knot {
+typedef struct demi_joint_node {
     int32_t mover, rod;            /* solver body or joint; the other is -1 */
     int32_t rank, order;           /* its position in the order of elimination; order of entry i
                                       of the array: which node is eliminated at position i */
@@ -26041,11 +26006,11 @@ typedef struct demi_knot {
     double spare;                  /* J: the part of bank that displacements may spend */
     double wide, closed;           /* m: largest gap; largest one that impulses may close */
     double x[6];                   /* right-hand side, then solution */
-    dem_quat turned;               /* of a body: orientation a step ahead, see demi_knots_ahead */
-    /* used by demi_knots_order: neighbours; queue of nodes with a degree of this index; number of
-       neighbours left; last node that marked it; see demi_knot_ready */
+    dem_quat turned;               /* of a body: orientation a step ahead, see demi_nodes_ahead */
+    /* used by demi_nodes_order: neighbours; queue of nodes with a degree of this index; number of
+       neighbours left; last node that marked it; see demi_node_ready */
     int32_t links, waiting, degree, mark, paid;
-} demi_knot;
+} demi_joint_node;
 /* Entry of a linked list of nodes; next -1: the last. */
 typedef struct demi_link_of { int32_t to, next; } demi_link_of;
 /* DEMI_GIVE: softness of joints over the inverse effective mass. DEMI_GIVE_LOOPS: the same in
@@ -26608,13 +26573,13 @@ static int demi_joints_check(const demi_reader *r) {
    >>joints-solved
    Direct solution of the joint constraints of >>joints: sparse block LDL' factorisation. This part
    has the elimination order, the blocks and their factor, sweeps, the energy guard and the results
-   (forces, power). A rod is a joint in one step. A knot is a node of the system: a body or a joint.
-   Owns rods, knots, links, rows and blocks of w->solver; writes w->joints, and displaces bodies to
+   (forces, power). A rod is a joint in one step. A node is a node of the system: a body or a joint.
+   Owns rods, nodes, links, rows and blocks of w->solver; writes w->joints, and displaces bodies to
    close gaps. Tests: tests/impulse/test_joints.c, tests/hard/hard_joints.c.
    --------------------------------------------------------------------------------------------- */
 
 /* Adds node `to` at the front of a linked list. Returns 0 if memory ran out. */
-static int demi_knot_link(dem_world *w, int32_t *list, int to) {
+static int demi_node_link(dem_world *w, int32_t *list, int to) {
     demi_solver *s = &w->solver;
     if (!DEMI_GROW(w, s->links, (size_t)s->link_count + 1)) return 0;
     s->links[s->link_count].to = to;
@@ -26623,86 +26588,86 @@ static int demi_knot_link(dem_world *w, int32_t *list, int to) {
     return 1;
 }
 /* Adds the node of a body (rod -1) or of a joint (mover -1), and returns its index. */
-static int demi_knot_add(demi_solver *s, int mover, int rod) {
-    demi_knot *k = s->knots + s->knot_count;
+static int demi_node_add(demi_solver *s, int mover, int rod) {
+    demi_joint_node *k = s->nodes + s->node_count;
     memset(k, 0, sizeof *k);
     k->mover = mover;
     k->rod = rod;
     k->links = k->waiting = k->rank = k->mark = -1;
-    k->group = s->knot_count;
-    return s->knot_count++;
+    k->group = s->node_count;
+    return s->node_count++;
 }
 /* Returns the root of a node's group of connected nodes (union-find with path halving). */
-static int demi_knot_group(demi_solver *s, int knot) {
-    while (s->knots[knot].group != knot)
-        knot = s->knots[knot].group = s->knots[s->knots[knot].group].group;
-    return knot;
+static int demi_node_group(demi_solver *s, int node) {
+    while (s->nodes[node].group != node)
+        node = s->nodes[node].group = s->nodes[s->nodes[node].group].group;
+    return node;
 }
 /* True if a node may be eliminated. A body always may. A joint may once one of its bodies was
    eliminated in its favour (`paid`; a body pays for one joint), or both were: only then does its
    pivot contain the compliance of a body. */
-static int demi_knot_ready(const demi_solver *s, const demi_knot *k) {
+static int demi_node_ready(const demi_solver *s, const demi_joint_node *k) {
     int e, gone = 1;
     if (k->rod < 0 || k->paid) return 1;
     for (e = 0; e < 2; e++) {
         const int end = s->rods[k->rod].ends[e];
-        gone &= end < 0 || s->knots[end].rank >= 0;
+        gone &= end < 0 || s->nodes[end].rank >= 0;
     }
     return gone;
 }
 /* Symbolic elimination of one node: its remaining neighbours become its column of the factor, and
    neighbours of each other (fill-in). Returns 0 if memory ran out. */
-static int demi_knot_eliminate(dem_world *w, int knot, int rank) {
+static int demi_node_eliminate(dem_world *w, int node, int rank) {
     demi_solver *s = &w->solver;
     const int first = s->row_count;
-    int i, j, e, paid = s->knots[knot].rod >= 0;
-    s->knots[knot].rank = rank;
-    s->knots[rank].order = knot;
-    s->knots[knot].first = first;
-    for (e = s->knots[knot].links; e >= 0; e = s->links[e].next) {
+    int i, j, e, paid = s->nodes[node].rod >= 0;
+    s->nodes[node].rank = rank;
+    s->nodes[rank].order = node;
+    s->nodes[node].first = first;
+    for (e = s->nodes[node].links; e >= 0; e = s->links[e].next) {
         const int to = s->links[e].to;
-        if (s->knots[to].rank >= 0) continue;
+        if (s->nodes[to].rank >= 0) continue;
         if (!DEMI_GROW(w, s->rows, (size_t)s->row_count + 1)) return 0;
         s->rows[s->row_count++] = to;
-        if (paid || s->knots[to].rod < 0 || s->knots[to].paid ||
-            (s->rods[s->knots[to].rod].ends[0] != knot &&
-             s->rods[s->knots[to].rod].ends[1] != knot)) continue;
-        s->knots[to].paid = paid = 1;
+        if (paid || s->nodes[to].rod < 0 || s->nodes[to].paid ||
+            (s->rods[s->nodes[to].rod].ends[0] != node &&
+             s->rods[s->nodes[to].rod].ends[1] != node)) continue;
+        s->nodes[to].paid = paid = 1;
     }
-    s->knots[knot].count = s->row_count - first;
+    s->nodes[node].count = s->row_count - first;
     for (i = first; i < s->row_count; i++) {
         const int a = s->rows[i];
-        for (e = s->knots[a].links; e >= 0; e = s->links[e].next)
-            s->knots[s->links[e].to].mark = a;
-        s->knots[a].degree--;
+        for (e = s->nodes[a].links; e >= 0; e = s->links[e].next)
+            s->nodes[s->links[e].to].mark = a;
+        s->nodes[a].degree--;
         for (j = first; j < s->row_count; j++) {
             const int b = s->rows[j];
-            if (b == a || s->knots[b].mark == a) continue;
-            if (!demi_knot_link(w, &s->knots[a].links, b)) return 0;
-            s->knots[a].degree++;
+            if (b == a || s->nodes[b].mark == a) continue;
+            if (!demi_node_link(w, &s->nodes[a].links, b)) return 0;
+            s->nodes[a].degree++;
         }
-        if (demi_knot_ready(s, s->knots + a) &&
-            !demi_knot_link(w, &s->knots[s->knots[a].degree].waiting, a)) return 0;
+        if (demi_node_ready(s, s->nodes + a) &&
+            !demi_node_link(w, &s->nodes[s->nodes[a].degree].waiting, a)) return 0;
     }
     return 1;
 }
 /* Minimum-degree ordering: eliminates the node with the fewest neighbours first. A tree is
    eliminated from its leaves to its root without fill-in; loops cause little. Returns 0 if memory
    ran out. */
-static int demi_knots_order(dem_world *w) {
+static int demi_nodes_order(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, rank = 0, d;
-    for (i = s->knot_count - 1; i >= 0; i--)
-        if (s->knots[i].rod < 0 &&
-            !demi_knot_link(w, &s->knots[s->knots[i].degree].waiting, i)) return 0;
-    for (d = 0; d < s->knot_count; ) {
-        demi_knot *k = s->knots + d;
+    for (i = s->node_count - 1; i >= 0; i--)
+        if (s->nodes[i].rod < 0 &&
+            !demi_node_link(w, &s->nodes[s->nodes[i].degree].waiting, i)) return 0;
+    for (d = 0; d < s->node_count; ) {
+        demi_joint_node *k = s->nodes + d;
         const int e = k->waiting;
         if (e < 0) { d++; continue; }
         k->waiting = s->links[e].next;
         i = s->links[e].to;
-        if (s->knots[i].rank >= 0 || s->knots[i].degree != d) continue;
-        if (!demi_knot_eliminate(w, i, rank++)) return 0;
+        if (s->nodes[i].rank >= 0 || s->nodes[i].degree != d) continue;
+        if (!demi_node_eliminate(w, i, rank++)) return 0;
         d = 0;
     }
     return 1;
@@ -26719,11 +26684,11 @@ static int demi_joints_room(dem_world *w) {
             n++;
         }
     w->joint_count = n;
-    s->knot_count = s->link_count = s->row_count = 0;
+    s->node_count = s->link_count = s->row_count = 0;
     if (!n) return 1;
     if (!DEMI_GROW(w, s->rods, (size_t)n) || !DEMI_GROW(w, s->joined, bodies) ||
-        !DEMI_GROW(w, s->knot_of, bodies) || !DEMI_GROW(w, s->knots, 3*(size_t)n)) return 0;
-    for (i = 0; i < w->bodies.count; i++) s->joined[i] = s->knot_of[i] = -1;
+        !DEMI_GROW(w, s->node_of, bodies) || !DEMI_GROW(w, s->nodes, 3*(size_t)n)) return 0;
+    for (i = 0; i < w->bodies.count; i++) s->joined[i] = s->node_of[i] = -1;
     for (i = 0; i < n; i++) {
         const dem_joint_desc *d = &w->joints[i].desc;
         demi_rod *r = s->rods + i;
@@ -26738,30 +26703,30 @@ static int demi_joints_room(dem_world *w) {
             r->next[e] = s->joined[body[e]];
             s->joined[body[e]] = i;
             if (!(w->bodies.inv_mass[body[e]] > 0)) continue;
-            if (s->knot_of[body[e]] < 0) s->knot_of[body[e]] = demi_knot_add(s, body[e], -1);
-            r->ends[e] = s->knot_of[body[e]];
+            if (s->node_of[body[e]] < 0) s->node_of[body[e]] = demi_node_add(s, body[e], -1);
+            r->ends[e] = s->node_of[body[e]];
             r->rows = demi_joint_rows(d->kind) + (d->motor == DEM_MOTOR_SPEED);
         }
         if (!r->rows) continue;
-        r->knot = demi_knot_add(s, -1, i);
+        r->node = demi_node_add(s, -1, i);
         for (e = 0; e < 2; e++) {
             const int end = r->ends[e];
             if (end < 0) continue;
-            s->knots[demi_knot_group(s, r->knot)].group = demi_knot_group(s, end);
-            if (!demi_knot_link(w, &s->knots[end].links, r->knot) ||
-                !demi_knot_link(w, &s->knots[r->knot].links, end)) return 0;
-            s->knots[end].degree++;
-            s->knots[r->knot].degree++;
+            s->nodes[demi_node_group(s, r->node)].group = demi_node_group(s, end);
+            if (!demi_node_link(w, &s->nodes[end].links, r->node) ||
+                !demi_node_link(w, &s->nodes[r->node].links, end)) return 0;
+            s->nodes[end].degree++;
+            s->nodes[r->node].degree++;
         }
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *group = s->knots + demi_knot_group(s, i);
-        const demi_rod *r = s->rods + s->knots[i].rod;
-        group->excess += s->knots[i].rod < 0 ? -1 : 1;
-        group->grounded |= s->knots[i].rod >= 0 && (r->ends[0] < 0 || r->ends[1] < 0);
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *group = s->nodes + demi_node_group(s, i);
+        const demi_rod *r = s->rods + s->nodes[i].rod;
+        group->excess += s->nodes[i].rod < 0 ? -1 : 1;
+        group->grounded |= s->nodes[i].rod >= 0 && (r->ends[0] < 0 || r->ends[1] < 0);
     }
-    return demi_knots_order(w) &&
-        DEMI_GROW(w, s->blocks, 36*((size_t)s->knot_count + (size_t)s->row_count));
+    return demi_nodes_order(w) &&
+        DEMI_GROW(w, s->blocks, 36*((size_t)s->node_count + (size_t)s->row_count));
 }
 
 /* --- the system of one step --- */
@@ -26770,7 +26735,7 @@ static int demi_joints_room(dem_world *w) {
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
 /* Returns the time, s, between the contact detections of this step and the next. A body that has
    made no step since it was set is at the beginning of the step in the first, not in the middle. */
-static dem_real demi_knot_ahead(const dem_world *w, int body) {
+static dem_real demi_node_ahead(const dem_world *w, int body) {
     return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
 }
 /* Returns the velocity, m/s, of point `at` in the frame of a wall that has this pose. */
@@ -26792,10 +26757,10 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + joint;
     const int body = end ? r->b : r->a;
-    const dem_real by = ahead ? demi_knot_ahead(w, body) : 0;
+    const dem_real by = ahead ? demi_node_ahead(w, body) : 0;
     demi_rod_end o;
     if (body < w->bodies.count) {
-        const dem_quat q = ahead && r->ends[end] >= 0 ? s->knots[r->ends[end]].turned
+        const dem_quat q = ahead && r->ends[end] >= 0 ? s->nodes[r->ends[end]].turned
             : demi_quat_at(w->bodies.orient + 4*body);
         o.arm = dem_quat_rotate(q, j->arm[end]);
         o.axis = dem_quat_rotate(q, j->axis[end]);
@@ -26868,7 +26833,7 @@ static void demi_rod_jacobian(const dem_world *w, const demi_rod *r, int end, in
     }
 }
 /* Computes the 6 x 6 matrix of mass, kg, and inertia, kg m2, of a body; 1 if it cannot rotate. */
-static void demi_knot_mass(const dem_world *w, int body, double *m) {
+static void demi_node_mass(const dem_world *w, int body, double *m) {
     const double inv = (double)w->bodies.inv_inertia[body];
     int i, k;
     memset(m, 0, 36*sizeof *m);
@@ -26935,43 +26900,43 @@ static void demi_block_times(double *y, const double *a, const double *x, int tr
         for (k = 0; k < 6; k++) y[i] -= a[transposed ? 6*k + i : 6*i + k]*x[k];
 }
 /* Returns the block of two linked nodes: column of the one eliminated first, rows of the other. */
-static double *demi_knots_block(const demi_solver *s, int a, int b) {
-    const int early = s->knots[a].rank < s->knots[b].rank ? a : b, late = early == a ? b : a;
-    int e = s->knots[early].first;
+static double *demi_nodes_block(const demi_solver *s, int a, int b) {
+    const int early = s->nodes[a].rank < s->nodes[b].rank ? a : b, late = early == a ? b : a;
+    int e = s->nodes[early].first;
     while (s->rows[e] != late) e++;
-    return s->blocks + 36*((size_t)s->knot_count + (size_t)e);
+    return s->blocks + 36*((size_t)s->node_count + (size_t)e);
 }
 /* Assembles [M -J'; -J -give] and factors it: M of bodies, J rows of joints, give their softness.
    Rows that are not in force are -1 on the diagonal. */
-static void demi_knots_factor(dem_world *w) {
+static void demi_nodes_factor(dem_world *w) {
     demi_solver *s = &w->solver;
     double row[6];
     int i, k, e, l, rank;
-    memset(s->blocks, 0, 36*((size_t)s->knot_count + (size_t)s->row_count)*sizeof *s->blocks);
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_rod *r = s->rods + s->knots[i].rod;
-        if (s->knots[i].rod < 0) demi_knot_mass(w, s->knots[i].mover, s->blocks + 36*(size_t)i);
-        for (k = 0; k < 6 && s->knots[i].rod >= 0; k++) {
+    memset(s->blocks, 0, 36*((size_t)s->node_count + (size_t)s->row_count)*sizeof *s->blocks);
+    for (i = 0; i < s->node_count; i++) {
+        const demi_rod *r = s->rods + s->nodes[i].rod;
+        if (s->nodes[i].rod < 0) demi_node_mass(w, s->nodes[i].mover, s->blocks + 36*(size_t)i);
+        for (k = 0; k < 6 && s->nodes[i].rod >= 0; k++) {
             const int on = demi_rod_row(w, r, k);
             s->blocks[36*(size_t)i + 7*(size_t)k] = on ? -(double)r->give[k] : -1;
             for (e = 0; e < 2; e++) {
                 const int body = r->ends[e];
                 double *block;
                 if (!on || body < 0) continue;
-                block = demi_knots_block(s, i, body);
+                block = demi_nodes_block(s, i, body);
                 demi_rod_jacobian(w, r, e, k, row);
                 for (l = 0; l < 6; l++)
-                    block[s->knots[body].rank < s->knots[i].rank ? 6*k + l : 6*l + k] -= row[l];
+                    block[s->nodes[body].rank < s->nodes[i].rank ? 6*k + l : 6*l + k] -= row[l];
             }
         }
     }
-    for (rank = 0; rank < s->knot_count; rank++) {
-        const int v = s->knots[rank].order, first = s->knots[v].first;
-        const int end = first + s->knots[v].count;
-        const double *columns = s->blocks + 36*(size_t)s->knot_count;
+    for (rank = 0; rank < s->node_count; rank++) {
+        const int v = s->nodes[rank].order, first = s->nodes[v].first;
+        const int end = first + s->nodes[v].count;
+        const double *columns = s->blocks + 36*(size_t)s->node_count;
         double *pivot = s->blocks + 36*(size_t)v;
-        if (s->knots[v].rod < 0) demi_block_invert(pivot, 1, 0);
-        else demi_block_invert(pivot, -1, s->rods[s->knots[v].rod].give);
+        if (s->nodes[v].rod < 0) demi_block_invert(pivot, 1, 0);
+        else demi_block_invert(pivot, -1, s->rods[s->nodes[v].rod].give);
         for (k = first; k < end; k++) {
             const int a = s->rows[k];
             double by[36];
@@ -26980,29 +26945,29 @@ static void demi_knots_factor(dem_world *w) {
             for (l = 0; l < 36; l++) by[l] = -by[l];
             demi_block_less(s->blocks + 36*(size_t)a, by, columns + 36*(size_t)k);
             for (l = first; l < end; l++)
-                if (s->knots[s->rows[l]].rank < s->knots[a].rank)
-                    demi_block_less(demi_knots_block(s, a, s->rows[l]), by, columns + 36*(size_t)l);
+                if (s->nodes[s->rows[l]].rank < s->nodes[a].rank)
+                    demi_block_less(demi_nodes_block(s, a, s->rows[l]), by, columns + 36*(size_t)l);
         }
     }
 }
 /* Solves the system: x of all nodes is the right-hand side before, and the solution after. */
-static void demi_knots_solve(demi_solver *s) {
-    const double *columns = s->blocks + 36*(size_t)s->knot_count;
+static void demi_nodes_solve(demi_solver *s) {
+    const double *columns = s->blocks + 36*(size_t)s->node_count;
     int rank, e;
-    for (rank = 0; rank < s->knot_count; rank++) {
-        const demi_knot *k = s->knots + s->knots[rank].order;
+    for (rank = 0; rank < s->node_count; rank++) {
+        const demi_joint_node *k = s->nodes + s->nodes[rank].order;
         double y[6] = {0, 0, 0, 0, 0, 0};
-        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);       /* - D^-1 x */
+        demi_block_times(y, s->blocks + 36*(k - s->nodes), k->x, 0);       /* - D^-1 x */
         for (e = 0; e < 6; e++) y[e] = -y[e];
         for (e = k->first; e < k->first + k->count; e++)
-            demi_block_times(s->knots[s->rows[e]].x, columns + 36*(size_t)e, y, 0);
+            demi_block_times(s->nodes[s->rows[e]].x, columns + 36*(size_t)e, y, 0);
     }
     while (rank-- > 0) {
-        demi_knot *k = s->knots + s->knots[rank].order;
+        demi_joint_node *k = s->nodes + s->nodes[rank].order;
         double y[6] = {0, 0, 0, 0, 0, 0};
         for (e = k->first; e < k->first + k->count; e++)
-            demi_block_times(k->x, columns + 36*(size_t)e, s->knots[s->rows[e]].x, 1);
-        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);
+            demi_block_times(k->x, columns + 36*(size_t)e, s->nodes[s->rows[e]].x, 1);
+        demi_block_times(y, s->blocks + 36*(k - s->nodes), k->x, 0);
         for (e = 0; e < 6; e++) k->x[e] = -y[e];
     }
 }
@@ -27016,7 +26981,7 @@ static void demi_rod_lay(dem_world *w, int i) {
     const demi_rod_end x = demi_rod_end_of(w, i, 0, 0), y = demi_rod_end_of(w, i, 1, 0);
     const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
     const int b = r->b < w->bodies.count;
-    const demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+    const demi_joint_node *group = s->nodes + (r->rows ? demi_node_group(s, r->node) : 0);
     const dem_real give = group->excess + !group->grounded > 0 ? DEMI_GIVE_LOOPS : DEMI_GIVE;
     int k, e;
     /* both arms end in the middle of the gap, which conserves angular momentum */
@@ -27104,25 +27069,25 @@ static void demi_joints_lay(dem_world *w) {
         }
         if (w->stage.forces_valid) j->state.turned += (double)(s->dt*r->before[5]);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        const int body = s->knots[i].mover;
-        demi_knot *group = s->knots + demi_knot_group(s, i);
+    for (i = 0; i < s->node_count; i++) {
+        const int body = s->nodes[i].mover;
+        demi_joint_node *group = s->nodes + demi_node_group(s, i);
         if (body < 0) {
-            demi_joint *j = w->joints + s->knots[i].rod;
-            const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
+            demi_joint *j = w->joints + s->nodes[i].rod;
+            const dem_real size = demi_rod_size(w, s->rods + s->nodes[i].rod), few = size/10;
             const dem_real gap = j->state.gap + j->state.tilt*size;
             group->bank += j->bank;
             group->wide = DEMI_MAX(group->wide, (double)gap);
-            group->closed = DEMI_MAX(group->closed, demi_rod_closed(w, s->rods + s->knots[i].rod));
+            group->closed = DEMI_MAX(group->closed, demi_rod_closed(w, s->rods + s->nodes[i].rod));
             j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
             group->open |= (j->apart > few)*2;
         } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
             demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
             (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
     }
-    for (i = 0; i < s->knot_count; i++) {
-        s->knots[i].guarded = s->knots[i].wide > s->knots[i].closed;
-        s->knots[i].open |= s->knots[i].guarded;
+    for (i = 0; i < s->node_count; i++) {
+        s->nodes[i].guarded = s->nodes[i].wide > s->nodes[i].closed;
+        s->nodes[i].open |= s->nodes[i].guarded;
     }
     s->factored = 0;
 }
@@ -27136,16 +27101,16 @@ static void demi_joints_warm(dem_world *w) {
     }
 }
 /* Predicts the orientations of joined bodies at the next detection, by the integrator's scheme. */
-static void demi_knots_ahead(dem_world *w) {
+static void demi_nodes_ahead(dem_world *w) {
     const demi_solver *s = &w->solver;
     int i;
-    for (i = 0; i < s->knot_count; i++) {
-        const int body = s->knots[i].mover;
+    for (i = 0; i < s->node_count; i++) {
+        const int body = s->nodes[i].mover;
         dem_quat q;
         dem_vec3 turn;
         dem_real dt;
         if (body < 0) continue;
-        dt = demi_knot_ahead(w, body);
+        dt = demi_node_ahead(w, body);
         q = demi_quat_at(w->bodies.orient + 4*body);
         turn = demi_at(s->movers[body].w);
         if (w->bodies.shaped && w->bodies.shape[body]) {
@@ -27154,11 +27119,11 @@ static void demi_knots_ahead(dem_world *w) {
             const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
             demi_rotation_rows[w->desc.rotation].fly(&q, L, I, inv, dt);
         } else q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(turn, dt)), q));
-        s->knots[i].turned = q;
+        s->nodes[i].turned = q;
     }
 }
 /* Returns the angular acceleration of a body that rotates with the spin without torque, rad/s2. */
-static dem_vec3 demi_knot_tumbles(const dem_world *w, int body, dem_vec3 spin) {
+static dem_vec3 demi_node_tumbles(const dem_world *w, int body, dem_vec3 spin) {
     const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
     const dem_vec3 I = demi_moments_of(w, body), x = dem_quat_unrotate(q, spin);
     const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
@@ -27188,7 +27153,7 @@ static void demi_rod_bends(const dem_world *w, int joint, dem_real *bend) {
             dem_vec3 spin = demi_at(w->solver.movers[body].w), tumbles = demi_v(0, 0, 0);
             if (body < w->bodies.count) {
                 if (!after) spin = demi_at(w->bodies.spin + 4*body);
-                tumbles = demi_knot_tumbles(w, body, spin);
+                tumbles = demi_node_tumbles(w, body, spin);
                 point = demi_add(point, demi_scale(demi_add(demi_cross(tumbles, r->arm[e]),
                     demi_cross(spin, demi_cross(spin, r->arm[e]))), half));
             } else point = demi_add(point, demi_scale(demi_rod_driven(w, joint), half));
@@ -27215,9 +27180,9 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
     memset(lacks, 0, 6*sizeof *lacks);
     if (!r->rows) return 0;
     demi_rod_velocity(s, r, u);
-    if (s->knots[s->knots[r->knot].group].guarded && !shifts) {
+    if (s->nodes[s->nodes[r->node].group].guarded && !shifts) {
         dem_real bend[6];
-        if (s->knots[s->knots[r->knot].group].guarded > 1)
+        if (s->nodes[s->nodes[r->node].group].guarded > 1)
             for (k = 0; k < 5; k++) lacks[k] = -r->before[k] - u[k];
         else {
             demi_rod_bends(w, i, bend);
@@ -27228,7 +27193,7 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
         const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
         const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
         const dem_vec3 tilt = demi_cross(y.axis, x.axis);       /* of a against b */
-        const dem_real dt = DEMI_MAX(demi_knot_ahead(w, r->a), demi_knot_ahead(w, r->b));
+        const dem_real dt = DEMI_MAX(demi_node_ahead(w, r->a), demi_node_ahead(w, r->b));
         const dem_real part = DEMI_MIN(1, size/(10*demi_length(off) + DEMI_TINY))/dt;
         const dem_real turn = DEMI_MIN(1, DEM_R(0.1)/(demi_length(tilt) + DEMI_TINY))/dt;
         demi_put(lacks, demi_scale(off, -part));
@@ -27249,23 +27214,23 @@ static dem_real demi_joints_solve(dem_world *w, int shifts) {
     demi_solver *s = &w->solver;
     dem_real worst = 0, left, lacks[6];
     int i, k;
-    if (!s->factored) demi_knots_factor(w);
+    if (!s->factored) demi_nodes_factor(w);
     s->factored = 1;
-    demi_knots_ahead(w);
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *knot = s->knots + i;
-        memset(knot->x, 0, sizeof knot->x);
-        if (knot->rod < 0) continue;
-        left = demi_rod_lacks(w, knot->rod, shifts, lacks);
+    demi_nodes_ahead(w);
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *node = s->nodes + i;
+        memset(node->x, 0, sizeof node->x);
+        if (node->rod < 0) continue;
+        left = demi_rod_lacks(w, node->rod, shifts, lacks);
         worst = DEMI_MAX(worst, left);
-        for (k = 0; k < 6; k++) knot->x[k] = -(double)lacks[k];
+        for (k = 0; k < 6; k++) node->x[k] = -(double)lacks[k];
     }
-    demi_knots_solve(s);
+    demi_nodes_solve(s);
     for (i = 0; i < w->joint_count && !shifts; i++) {
         demi_rod *r = s->rods + i;
         dem_real by[6];
         if (!r->rows) continue;
-        for (k = 0; k < 6; k++) r->given[k] += by[k] = (dem_real)s->knots[r->knot].x[k];
+        for (k = 0; k < 6; k++) r->given[k] += by[k] = (dem_real)s->nodes[r->node].x[k];
         demi_rod_apply(w, r, by, demi_rod_twist(r, by));
     }
     return worst;
@@ -27302,9 +27267,9 @@ static dem_real demi_joints_sweep(dem_world *w) {
     const dem_real enough = DEMI_JOINED*w->effects.radius_min/s->dt;
     dem_real worst, left, far2 = 0, digit;
     int rounds = 0, i;
-    if (!s->knot_count) return 0;
-    for (i = 0; i < s->knot_count; i++) {
-        const dem_real *x = w->bodies.pos + 4*DEMI_MAX(s->knots[i].mover, 0);
+    if (!s->node_count) return 0;
+    for (i = 0; i < s->node_count; i++) {
+        const dem_real *x = w->bodies.pos + 4*DEMI_MAX(s->nodes[i].mover, 0);
         far2 = DEMI_MAX(far2, demi_dot(demi_at(x), demi_at(x)));
     }
     digit = 8*(DEMI_SINGLE ? DEM_R(FLT_EPSILON) : DEM_R(DBL_EPSILON))/s->dt;
@@ -27335,18 +27300,18 @@ static double demi_rod_work(const dem_world *w, const demi_rod *r) {
 static int demi_joints_guard(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, n = 0;
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < s->node_count; i++) s->nodes[i].work = 0;
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        if (r->rows) s->knots[demi_knot_group(s, r->knot)].work += demi_rod_work(w, r);
+        if (r->rows) s->nodes[demi_node_group(s, r->node)].work += demi_rod_work(w, r);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *k = s->knots + i;
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *k = s->nodes + i;
         if (k->group != i || k->guarded > 1 || !(k->work > DEMI_MAX(k->bank, 0))) continue;
         k->guarded++;
         n++;
     }
-    for (i = 0; i < s->knot_count && n; i++) s->knots[i].group = demi_knot_group(s, i);
+    for (i = 0; i < s->node_count && n; i++) s->nodes[i].group = demi_node_group(s, i);
     return n;
 }
 /* Closes the gaps of guarded groups by displacements, as far as the energy that they may spend
@@ -27358,18 +27323,18 @@ static double demi_joints_shift(dem_world *w) {
     demi_solver *s = &w->solver;
     double farthest = 0;
     int i, any = 0;
-    for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
+    for (i = 0; i < s->node_count; i++) any |= s->nodes[i].guarded && s->nodes[i].open;
     if (!any) return 0;
     demi_joints_solve(w, 1);
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_knot *k = s->knots + i;
+    for (i = 0; i < s->node_count; i++) s->nodes[i].work = 0;
+    for (i = 0; i < s->node_count; i++) {
+        const demi_joint_node *k = s->nodes + i;
         const demi_d3 g = demi_d3_of(w->desc.gravity), x = demi_d3_at(k->x);
         const double fall = demi_d3_dot(g, x) + digit*demi_d3_length(g)*demi_d3_length(x);
-        if (k->mover >= 0) s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
+        if (k->mover >= 0) s->nodes[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_knot *k = s->knots + i, *group = s->knots + k->group;
+    for (i = 0; i < s->node_count; i++) {
+        const demi_joint_node *k = s->nodes + i, *group = s->nodes + k->group;
         const double paid = group->open > 1 || !(group->work > group->spare) ? 1
             : group->spare/group->work;
         const dem_real by = (dem_real)paid*s->dt;
@@ -27399,13 +27364,13 @@ static double demi_joints_shift(dem_world *w) {
 static void demi_joints_bank(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, k;
-    for (i = 0; i < s->knot_count; i++) {
-        s->knots[i].spare = s->knots[i].bank;
-        s->knots[i].bank = s->knots[i].work = 0;
+    for (i = 0; i < s->node_count; i++) {
+        s->nodes[i].spare = s->nodes[i].bank;
+        s->nodes[i].bank = s->nodes[i].work = 0;
     }
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+        demi_joint_node *group = s->nodes + (r->rows ? demi_node_group(s, r->node) : 0);
         dem_real u[6];
         w->joints[i].bank -= w->joints[i].held;
         if (!r->rows) continue;
@@ -27415,13 +27380,13 @@ static void demi_joints_bank(dem_world *w) {
     }
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        const demi_knot *group = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
+        const demi_joint_node *group = r->rows ? s->nodes + demi_node_group(s, r->node) : 0;
         if (!group) w->joints[i].bank = 0;
         else if (group->bank > DEMI_BANKED*group->kinetic)
             w->joints[i].bank *= DEMI_BANKED*group->kinetic/group->bank;
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *group = s->knots + i;
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *group = s->nodes + i;
         const double most = DEMI_BANKED*group->kinetic;
         group->bank = DEMI_MIN(group->bank, most);
         group->spare = DEMI_MAX(0, DEMI_MIN(group->spare, group->bank) -
@@ -27440,7 +27405,7 @@ static void demi_joints_tell(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
     int i, k;
-    demi_knots_ahead(w);
+    demi_nodes_ahead(w);
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
         demi_joint *j = &w->joints[i];
@@ -27485,7 +27450,9 @@ static void demi_joints_tell(dem_world *w) {
    (the natural map in the metric of its inverse effective mass).
      Gauss-Seidel   contact after contact, each solved exactly in its own metric [JEA99]; for the
                     convex cone [TAS10] with the projection in that metric (again a cone, with
-                    mu sqrt(gt/gn)).
+                    mu sqrt(gt/gn)). Between two sweeps the impulses also go on along a conjugate
+                    direction [SIL10], as in the method of Fletcher and Reeves, with the change of
+                    a sweep as the negative gradient; the next sweep projects onto the cones again.
      Jacobi         all contacts at once; each takes a part of its step that is smaller the more
                     contacts its bodies have [TON12]. For comparison: it needs six to twelve times
                     as many sweeps.
@@ -27610,7 +27577,7 @@ static void demi_colours_all(dem_world *w, demi_task task) {
         const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
         s->first = s->begins[k];
         s->last = s->begins[k + 1];
-        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->crew.now, runs, 0, task);
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->threads.now, runs, 0, task);
         s->run += runs;
     }
 }
@@ -27620,7 +27587,7 @@ static void demi_runs_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
     s->first = s->run = 0;
     s->last = s->count;
-    demi_parallel(w, w->crew.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
+    demi_parallel(w, w->threads.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
     s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
 }
 /* Returns the sums over all runs of the last sweep. They are added in the order of runs, so the
@@ -27651,6 +27618,16 @@ static void demi_impulses_warm(dem_world *w, int index) {
     }
 }
 
+/* Columns of s->vectors, one vector per contact: BY: change of the impulse. Gauss-Seidel: WAY: the
+   direction in which impulses go on. Gradients: X, UX: impulse and relative velocity of the last
+   iterate; Y, UY: of the point where the gradient is taken. BROUGHT: relative velocity that BY
+   causes. BEGAN: impulse at the start. GIVEN: its x is the given bias. */
+enum { DEMI_BY, DEMI_WAY, DEMI_X = DEMI_WAY, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN,
+       DEMI_GIVEN };
+DEM_INLINE dem_vec3 *demi_vector_at(const demi_solver *s, int column, int i) {
+    return s->vectors + (size_t)column*(size_t)s->count + i;
+}
+
 /* --- Gauss-Seidel --- */
 
 /* Bodies are prefetched this many contacts ahead, which saves a tenth of the time. */
@@ -27672,6 +27649,9 @@ enum { DEMI_SOON = 8 };
             demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, SHAPED), \
                                                      &push, &slip, CONVEX)); \
             by = demi_add(demi_scale(c->normal, push - c->push), demi_sub(slip, c->slip)); \
+            sums.first += (push - c->push)*(push - c->push)*(c->gn - c->gt) + \
+                demi_dot(by, by)*c->gt; \
+            *demi_vector_at(s, DEMI_BY, i) = by; \
             c->push = push; \
             c->slip = slip; \
             demi_impulse_apply(s, c, by, SHAPED); \
@@ -27700,22 +27680,47 @@ static int demi_solved_open(const dem_world *w, const demi_solved *o) {
     if (w->desc.tolerance > 0) return o->worst > (double)w->desc.tolerance;
     return o->rms > enough || o->worst > 30*enough;
 }
+/* Adds s->step times the last direction to the impulses of a run. This plus the change of the last
+   sweep is the next direction. */
+static void demi_seidel_on(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        dem_vec3 *way = demi_vector_at(s, DEMI_WAY, i);
+        const dem_vec3 by = demi_scale(*way, s->step);
+        const dem_real push = demi_dot(by, c->normal);
+        *way = demi_add(by, *demi_vector_at(s, DEMI_BY, i));
+        c->push += push;
+        c->slip = demi_add(c->slip, demi_sub(by, demi_scale(c->normal, push)));
+        demi_impulse_apply(s, c, by, shaped);
+    }
+}
 /* Solves contacts and joints by Gauss-Seidel, in at most `most` sweeps; more if the energy guard of
    joints requires them. */
 static demi_solved demi_solve_seidel(dem_world *w, int most) {
     const demi_task kinds[4] = {demi_seidel_spheres, demi_seidel_spheres_convex,
                                 demi_seidel_shapes, demi_seidel_shapes_convex};
     const demi_task task = kinds[(w->desc.cone == DEM_CONE_CONVEX) + 2*(w->bodies.shaped > 0)];
+    demi_solver *s = &w->solver;
     demi_solved o = {0, 0, 0};
+    dem_real last = 0;                          /* squared size of the change of the last sweep */
+    int open;
+    if (s->count) memset(demi_vector_at(s, DEMI_WAY, 0), 0, (size_t)s->count*sizeof *s->vectors);
     do {
         demi_run_sums sums;
         dem_real joints;
         demi_colours_all(w, task);
-        sums = demi_runs_sum(&w->solver);
+        sums = demi_runs_sum(s);
         joints = demi_joints_sweep(w);          /* once: a macro would evaluate it twice */
         sums.worst = DEMI_MAX(sums.worst, joints);
-        demi_solved_tell(&w->solver, &o, sums);
-    } while ((++o.sweeps < most && demi_solved_open(w, &o)) || demi_joints_guard(w));
+        demi_solved_tell(s, &o, sums);
+        open = ++o.sweeps < most && demi_solved_open(w, &o);
+        s->step = sums.first < last ? sums.first/last : 0;      /* 0: begins again */
+        last = sums.first;
+        if (open) demi_colours_all(w, demi_seidel_on);
+    } while (open || demi_joints_guard(w));
     return o;
 }
 
@@ -27794,13 +27799,6 @@ static void demi_impulses_release(dem_world *w, int index) {
 
 /* --- gradients --- */
 
-/* Columns of s->vectors, one vector per contact: BY: change of the impulse. X, UX: impulse and
-   relative velocity of the last iterate; Y, UY: of the point where the gradient is taken. BROUGHT:
-   relative velocity that BY causes. BEGAN: impulse at the start. GIVEN: its x is the given bias. */
-enum { DEMI_BY, DEMI_X, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN, DEMI_GIVEN };
-DEM_INLINE dem_vec3 *demi_vector_at(const demi_solver *s, int column, int i) {
-    return s->vectors + (size_t)column*(size_t)s->count + i;
-}
 DEM_INLINE dem_vec3 demi_impulse_vector(const demi_impulse *c) {
     return demi_add(demi_scale(c->normal, c->push), c->slip);
 }
@@ -28016,17 +28014,18 @@ static demi_solved demi_solve_spectral(dem_world *w, int most) {
 }
 
 /* A solver. vectors: number of columns that it needs; moments: 1 if it supports rolling and
-   spinning friction; joints: 1 if it supports joints; most: largest number of sweeps. */
+   spinning friction; joints: 1 if it supports joints; parts: 1 if it takes parts of steps, so that
+   contacts that do not push may keep a remainder of an impulse; most: largest number of sweeps. */
 typedef struct demi_solver_row {
     const char *name;
-    int vectors, moments, joints;
+    int vectors, moments, joints, parts;
     demi_solved (*solve)(dem_world *w, int most);
 } demi_solver_row;
 static const demi_solver_row demi_solvers[] = {
-    {"Gauss-Seidel", 0, 1, 1, demi_solve_seidel},
-    {"Jacobi", 1, 0, 0, demi_solve_jacobi},
-    {"APGD", DEMI_GIVEN + 1, 0, 0, demi_solve_apgd},
-    {"spectral gradients", DEMI_GIVEN + 1, 0, 0, demi_solve_spectral}
+    {"Gauss-Seidel", DEMI_WAY + 1, 1, 1, 0, demi_solve_seidel},
+    {"Jacobi", 1, 0, 0, 1, demi_solve_jacobi},
+    {"APGD", DEMI_GIVEN + 1, 0, 0, 1, demi_solve_apgd},
+    {"spectral gradients", DEMI_GIVEN + 1, 0, 0, 1, demi_solve_spectral}
 };
 enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };
 
@@ -28058,7 +28057,7 @@ static dem_result demi_impulses_settle(dem_world *w) {
    memory ran out. */
 static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
-    const size_t vectors = (size_t)demi_solvers[w->desc.solver].vectors;
+    const demi_solver_row *solver = &demi_solvers[w->desc.solver];
     const size_t bodies = (size_t)w->bodies.count;
     size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
     int d;
@@ -28071,10 +28070,10 @@ static int demi_impulses_room(dem_world *w) {
     s->twisted = demi_impulses_twist(w);
     return DEMI_GROW(w, s->meetings, n) && DEMI_GROW(w, s->contacts, n) &&
         DEMI_GROW(w, s->beside, n) && DEMI_GROW(w, s->runs, n/DEMI_SWEEP_RUN + DEMI_COLOURS) &&
-        DEMI_GROW(w, s->movers, vectors ? 2*movers : movers) &&
+        DEMI_GROW(w, s->movers, solver->parts ? 2*movers : movers) &&
         DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
         (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
-        (!vectors || (DEMI_GROW(w, s->vectors, vectors*n) && DEMI_GROW(w, s->degrees, bodies))) &&
+        DEMI_GROW(w, s->vectors, (size_t)solver->vectors*n) && DEMI_GROW(w, s->degrees, bodies) &&
         (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
 }
 /* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
@@ -28319,7 +28318,7 @@ static void demi_impulses(dem_world *w) {
         for (i = 0; i < DEMI_TAMINGS && demi_impulses_tame(w, i == DEMI_TAMINGS - 1); i++)
             solved = demi_solvers[w->desc.solver].solve(w, most);
     }
-    if (demi_solvers[w->desc.solver].vectors && !demi_solved_open(w, &solved)) {
+    if (demi_solvers[w->desc.solver].parts && !demi_solved_open(w, &solved)) {
         demi_runs_all(w, demi_impulses_release);
         demi_colours_all(w, demi_vectors_apply);
     }
@@ -28639,11 +28638,11 @@ enum { DEMI_FILL_TRIES = 2000, DEMI_FILL_OUTSIDE = 200000 };
 #define DEMI_PACK_MOST 3e8
 
 /* A node of the tree. */
-typedef struct demi_node {
+typedef struct demi_crowd_node {
     int32_t child;                 /* the first of its two halves; 0: a leaf */
     int32_t first, count;          /* of a leaf: its first sphere, linked by `next`; their number */
     dem_real largest;              /* m, largest radius in it */
-} demi_node;
+} demi_crowd_node;
 /* A sphere in the tree. body: index of its body; -1: not a body yet. next: -1: the last. */
 typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; } demi_sphere;
 /* An occupancy tree. Its spheres and nodes are w->crowd and w->crowd_nodes. */
@@ -28684,7 +28683,7 @@ static demi_nook demi_crowd_root(const demi_crowd *c) {
     return n;
 }
 /* Links sphere i into a leaf, as its first. */
-static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
+static void demi_leaf_put(demi_crowd_node *leaf, demi_sphere *all, int32_t i) {
     all[i].next = leaf->first;
     leaf->first = i;
     leaf->count++;
@@ -28693,14 +28692,14 @@ static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
 /* Splits a leaf into two halves. Returns 0 if memory runs out; the leaf is then unchanged. */
 static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
     demi_sphere *all = w->crowd;
-    demi_node *nodes;
+    demi_crowd_node *nodes;
     int32_t i, next;
     int k;
     if (!DEMI_GROW(w, w->crowd_nodes, (size_t)c->nodes + 2)) return 0;
     nodes = w->crowd_nodes;
     nodes[at->node].child = c->nodes;
     for (k = 0; k < 2; k++) {
-        demi_node *half = nodes + c->nodes++;
+        demi_crowd_node *half = nodes + c->nodes++;
         half->child = half->count = 0;
         half->first = -1;
         half->largest = 0;
@@ -28717,7 +28716,7 @@ static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
 static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radius, int body) {
     demi_nook at = demi_crowd_root(c);
     demi_sphere *s;
-    demi_node *node;
+    demi_crowd_node *node;
     int depth = 0;
     if (!DEMI_GROW(w, w->crowd, (size_t)c->count + 1)) return 0;
     s = w->crowd + c->count;
@@ -28760,7 +28759,7 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
     const demi_sphere *all = w->crowd;
-    const demi_node *nodes = w->crowd_nodes;
+    const demi_crowd_node *nodes = w->crowd_nodes;
     const dem_vec3 at = demi_place_of(&c->p, centre);
     demi_nook stack[DEMI_CROWD_DEPTH + 2];
     double x[3];
@@ -28770,7 +28769,7 @@ static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 cen
     stack[top++] = demi_crowd_root(c);
     while (top) {
         const demi_nook n = stack[--top];
-        const demi_node *node = nodes + n.node;
+        const demi_crowd_node *node = nodes + n.node;
         const double cut = (double)(radius + node->largest);
         if (demi_nook_far2(c, &n, x) >= cut*cut) continue;
         if (node->child) {                      /* visits the half that contains it first */
@@ -28874,7 +28873,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
                             int material, demi_periods p) {
     dem_vec3 mid;
     double half[3];
-    demi_node *root;
+    demi_crowd_node *root;
     int i, k;
     c->p = p;
     c->material = material;
@@ -31797,7 +31796,7 @@ static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
+    demi_parallel(w, w->threads.now, runs, 0, demi_some_ahead);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
@@ -31813,7 +31812,7 @@ static void demi_ahead(dem_world *w) {
 static void demi_ahead_back(dem_world *w) {
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, 0, demi_some_back);
+    demi_parallel(w, w->threads.now, runs, 0, demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 
@@ -34009,7 +34008,7 @@ static int demi_forces(dem_world *w) {
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
-    if (w->crew.now > 1) demi_domains_weigh(w);
+    if (w->threads.now > 1) demi_domains_weigh(w);
     for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
         const dem_vec3 axis = w->walls[i].motion.axis;
@@ -34592,11 +34591,11 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     if (looks && result == DEM_OK) result = demi_look(h);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
-        demi_crew_begin(h);
+        demi_threads_begin(h);
         if (!h->stage.moved) result = demi_step_ready(h);
         if (result == DEM_OK) {
             result = demi_step_once(h);
-            demi_crew_end(h);
+            demi_threads_end(h);
             DEMI_PHASE(h, result, ended)
         }
         demi_called(h, was);
@@ -34938,8 +34937,8 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     /* until there are bodies, by which demi_levels_choose decides */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
-    w->crew.now = w->desc.threads;              /* until the first step */
-    w->crew.fixed = DEMI_CREW_FIXED;
+    w->threads.now = w->desc.threads;              /* until the first step */
+    w->threads.fixed = DEMI_THREADS_FIXED;
     demi_bodies_begin(w);
     w->bodies.orienting = desc->orientations != 0;
     w->bodies.backward = demi_integrator_of(w)->backward;
@@ -35054,7 +35053,8 @@ static dem_result demi_contacts_settle(dem_world *w, const char *call) {
                            w->look.calling.who);
     was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
-    if (result == DEM_OK) result = demi_refresh(w);
+    if (result == DEM_OK)                       /* as a step does: inserted grains touch nothing */
+        result = s->forces_valid && !s->pairs_changed ? demi_all_rebuild(w) : demi_refresh(w);
     demi_called(w, was);
     return result;
 }
@@ -39858,7 +39858,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->bodies.backward = w->bodies.backward;
     t->bodies.booked = w->bodies.booked;
     t->events.desc = w->events.desc;
-    t->crew = w->crew;
+    t->threads = w->threads;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);
@@ -40232,8 +40232,7 @@ static int demi_twin_lists_room(dem_world *t) {
         const demi_domain *o = &t->domains[d];
         const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
                               t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
-                                  ? o->walls : 0,
-                              t->domain_count > 1};
+                                  ? o->walls : 0, t->domain_count > 1};
         for (k = 0; k < 5; k++) most[k] = DEMI_MAX(most[k], counts[k]);
         crowd[d] = o->kept;
     }
@@ -43124,8 +43123,8 @@ static void demi_report(const dem_world *world, FILE *out) {
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
-    if (w->crew.best && w->crew.best < c.threads)
-        demi_words(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
+    if (w->threads.best && w->threads.best < c.threads)
+        demi_words(few, sizeof few, " (%d in use: more were not faster)", w->threads.best);
     demi_print(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR, DEM_VERSION_PATCH,
             DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", few, c.domains,

@@ -18,7 +18,7 @@ BEGIN {
         "(events?|noted|impacts?|worn|EVENT|NOTED)(_.*)?|ongoing|matched|sums|note|note_arm|notes_room|pairs_noted" \
         "|tile_note|(leave|look)_events", "events")
     feature("joints", "impulse/joints.h impulse/joints-solved.h",
-        "(joints?|rods?|knots?|JOINT)(_.*)?|joined|no_joint|motor_sane|JOINTED", "joints|joint_count|joint_last")
+        "(joints?|rods?|nodes?|JOINT)(_.*)?|joined|no_joint|motor_sane|JOINTED", "joints|joint_count|joint_last")
     # averages on a grid and of bodies; not fields of force (demi_field_rate) and of descs (demi_field_row)
     feature("fields", "run/fields.h",
         "field|field_(branch|cells|contacts|counts|due|find|grain|next|reals|rows|squares.*|volume)|fields_.*" \

@@ -478,6 +478,7 @@
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
      [RUB15]   Rubio-Largo, Lind, Maza & Hidalgo, Comput. Part. Mech. 2 (2015) 127: granular gas of
                ellipsoids on GPUs
+     [SIL10]   Silcowitz, Niebe & Erleben, Visual Comput. 26 (2010) 893: conjugate sweeps
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
      [SPI24]   del Valle et al., Comput. Phys. Commun. 297 (2024) 109077: SPIRAL
      [STE96]   Stewart & Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673: rigid bodies by steps

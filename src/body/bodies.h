@@ -682,8 +682,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (w->bodies.orienting)
         demi_quat_put(w->bodies.orient + 4*i,
                       demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)
-                                                               : q,
-                                                            shape->frame) : q));
+                                                               : q, shape->frame) : q));
     demi_body_start(w, i, v, spin, before);
     demi_scene_changed(w);
     return DEM_OK;

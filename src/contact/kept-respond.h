@@ -110,22 +110,13 @@ static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
     return demi_part_now(w, k->a, k->part_a).radius +
         (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
 }
-/* Fills in `who` for a law that has desc.law_who set. */
+/* Fills in `who` for a persistent contact. */
 static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rates,
                           dem_contact_who *who) {
-    const demi_periods periods = demi_periods_of(w);
-    who->a = dem_body_id_get(w, k->a);
-    who->radius_a = demi_part_now(w, k->a, k->part_a).radius;
-    who->mass_a = w->bodies.mass[k->a];
-    if (k->b >= 0) {
-        who->b = dem_body_id_get(w, k->b);
-        who->radius_b = demi_part_now(w, k->b, k->part_b).radius;
-        who->mass_b = w->bodies.mass[k->b];
-    } else if (demi_wall_is(&w->walls[k->wall], DEMI_BALLS))
-        who->radius_b = w->walls[k->wall].radius;
-    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*k->a), k->arm_a));
-    who->time = w->clock.time;
-    demi_who_reals(w, k->a, k->b, k->wall, rates, who);
+    const dem_real radius = k->b >= 0 ? demi_part_now(w, k->b, k->part_b).radius
+        : demi_wall_is(&w->walls[k->wall], DEMI_BALLS) ? w->walls[k->wall].radius : 0;
+    demi_who_fill(w, k->a, k->b < 0 ? -1 - k->wall : k->b, demi_part_now(w, k->a, k->part_a).radius,
+                  radius, k->arm_a, rates, who);
 }
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC push_options
@@ -391,29 +382,30 @@ static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run 
     c->user = w->desc.law_user;
     if (w->desc.law_who) demi_kept_who(w, k, t->rows.gains[q], &c->who);
 }
-/* Evaluates laws contact by contact: a user-defined law, or built-in laws for a few contacts. */
-static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
+/* Calls the law for row q of a tile. still: null, or where only the elastic force goes: the contact
+   is at rest then, and keeps its history. */
+static void demi_row_law(const dem_world *w, demi_tile *t, const demi_run *r, int q, dem_contact *c,
+                         dem_real *still) {
     dem_real m[DEMI_MEMORY];
     dem_contact_force f;
+    if (still) c->closing_speed = 0;
+    demi_recall(t, q, 0, r->keep, m);
+    demi_law(w, c, m, &f);
+    if (still) { *still = f.normal; return; }
+    demi_keep(t, q, 0, r->keep, m);
+    demi_normal_put(t, &r->same, q, &f, 2);
+    demi_tangent_put(t, &r->same, q, &f, 2);
+    demi_rolling_put(t, &r->same, q, &f, 2);
+}
+/* Evaluates laws contact by contact: a user-defined law, or built-in laws for a few contacts. */
+static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
     dem_contact c;
-    int q;
-    for (q = 0; q < t->count; q++) {
-        t->still[q] = 0;
-        if (demi_kept_lifted(t->contact[q])) {  /* at rest, with a copy of its history */
+    int q, rests;
+    for (q = 0; q < t->count; q++)
+        for (t->still[q] = 0, rests = demi_kept_lifted(t->contact[q]); rests >= 0; rests--) {
             demi_kept_see(w, t, r, q, &c);
-            demi_recall(&t->rows, q, 0, r->keep, m);
-            c.closing_speed = 0;
-            demi_law(w, &c, m, &f);
-            t->still[q] = f.normal;
+            demi_row_law(w, &t->rows, r, q, &c, rests ? &t->still[q] : 0);
         }
-        demi_kept_see(w, t, r, q, &c);
-        demi_recall(&t->rows, q, 0, r->keep, m);
-        demi_law(w, &c, m, &f);
-        demi_keep(&t->rows, q, 0, r->keep, m);
-        demi_normal_put(&t->rows, &r->same, q, &f, 2);
-        demi_tangent_put(&t->rows, &r->same, q, &f, 2);
-        demi_rolling_put(&t->rows, &r->same, q, &f, 2);
-    }
 }
 /* Evaluates the normal law at zero closing speed: the elastic force alone, N. History is
    restored. */
@@ -432,9 +424,6 @@ static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
         t->rows.closing[q] = closing[q];
         for (e = at; e < r->keep; e++) t->rows.memory[e][q] = memory[e][q];
     }
-}
-DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
-    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
 }
 /* Adds a force and a moment on a body at point `at` to the sums of its wall, with opposite sign.
    surface: velocity of the wall there, m/s. */

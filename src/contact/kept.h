@@ -407,11 +407,11 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
 }
 /* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch: row k of a
    tile. It is the only contact of its pair, so all its weights are 1. */
-static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int send) {
+static void demi_kept_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, int k, int send) {
     const int at = d*w->near.stride + t->entry[k];
     demi_part p, q;
     demi_kept *c;
-    if (!demi_eggs_meet(t, k)) return;
+    if (!demi_ellipsoids_meet(t, k)) return;
     c = demi_kept_new(w, d);
     if (!c) return;
     demi_kept_ahead(c, 2, 1);
@@ -425,8 +425,8 @@ static void demi_kept_eggs(dem_world *w, int d, demi_egg_tile *t, int k, int sen
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);
     }
-    demi_eggs_set(w, t, k, &p, &q, c);
-    c->arm_a = demi_d3_real(demi_eggs_at(t->point, k));
+    demi_ellipsoids_set(w, t, k, &p, &q, c);
+    c->arm_a = demi_d3_real(demi_ellipsoids_at(t->point, k));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a,
                         demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at)));
@@ -454,10 +454,11 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, con
 }
 /* Finds the contacts of entry p of the pruned list of work group d: of ellipsoids from tile t,
    which is filled again, before `end`, when it is used up; those of others individually. */
-DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send, demi_egg_tile *t,
-                                const demi_kept *old, int olds) {
-    if (p >= t->end) demi_eggs_find(w, d, p, end, t);
-    if (t->next < t->count && t->entry[t->next] == p) demi_kept_eggs(w, d, t, t->next++, send);
+DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send,
+                                demi_ellipsoid_tile *t, const demi_kept *old, int olds) {
+    if (p >= t->end) demi_ellipsoids_find(w, d, p, end, t);
+    if (t->next < t->count && t->entry[t->next] == p)
+        demi_kept_ellipsoids(w, d, t, t->next++, send);
     else demi_kept_pair(w, d, d*w->near.stride + p, send, old, olds);
 }
 
@@ -475,8 +476,7 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
             demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
         if (old[e].b >= 0 || !demi_kept_one(w, &old[e], c) || old[e].part_a != c->part_a ||
-            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5))
-            continue;
+            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5)) continue;
         for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
         if (i == count) c->deep = 2 - c->deep;
     }
@@ -484,7 +484,8 @@ static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds
 /* True if contact point `place` of part p, whose centre is at `at`, overlaps or is within the range
    of the law. Contact points of other shapes are found only within that range. For an ellipsoid the
    gap is the distance from its surface to the point, measured on the ray from its centre. For a
-   grain of a wall it is that of two ellipsoids (demi_eggs_meet), measured to the grain's centre. */
+   grain of a wall it is that of two ellipsoids (demi_ellipsoids_meet), measured to the grain's
+   centre. */
 static int demi_place_near(const dem_world *w, const demi_wall *wall, const demi_part *p,
                            dem_vec3 at, const demi_touching *place) {
     const dem_real scale = 1 - place->overlap;
@@ -746,9 +747,9 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled, several;
     int from, end_k;
-    const int eggs = demi_eggs_exist(w);
-    demi_egg_tile own, cross;
-    own.end = cross.end = eggs ? 0 : INT_MAX;
+    const int ellipsoids = demi_ellipsoids_exist(w);
+    demi_ellipsoid_tile own, cross;
+    own.end = cross.end = ellipsoids ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
     own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;

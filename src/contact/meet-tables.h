@@ -30,8 +30,8 @@ DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, con
 /* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
 static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                    const demi_touching *place, demi_kept *c) {
-    demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
-                     c);
+    demi_ellipsoid_overlap(w, p, place->overlap,
+                           demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0), c);
     c->arm_a = demi_add(p->centre, c->arm_a);
 }
 /* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is

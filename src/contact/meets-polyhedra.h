@@ -17,8 +17,7 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
     c->overlap = ball->radius - (dem_real)off;
     if (!(c->overlap > -demi_range(w, p->radius + q->radius))) return 0;
     c->normal = demi_d3_real(at);
-    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
-                                   : demi_unit(gap);
+    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off)) : demi_unit(gap);
     c->deep = c->overlap/ball->radius;
     c->r_eff = ball->radius;
     c->arm_a = demi_d3_real(at);
@@ -30,27 +29,27 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
 }
 /* An ellipsoid and a polyhedron, as with walls: at the point that the ellipsoid touches first when
    it is scaled, by W0. */
-static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                 dem_vec3 gap, demi_kept *c) {
     const int first = p->kind == DEMI_ELLIPSOID;
-    const demi_part *egg = first ? p : q;
+    const demi_part *ellipsoid = first ? p : q;
     dem_vec3 at, n;
     demi_d3 near;
     double W0;
     demi_solid s;
-    demi_solid_measure(first ? q : p, egg, first ? gap : demi_scale(gap, -1), &s);
+    demi_solid_measure(first ? q : p, ellipsoid, first ? gap : demi_scale(gap, -1), &s);
     W0 = demi_solid_near(&s, demi_d(0, 0, 0), &near);
-    if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(egg)))
+    if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(ellipsoid)))
         return 0;
     at = demi_d3_real(near);
-    n = demi_v(at.x/egg->axes.x, at.y/egg->axes.y, at.z/egg->axes.z);
-    at = demi_v(at.x*egg->axes.x, at.y*egg->axes.y, at.z*egg->axes.z);
+    n = demi_v(at.x/ellipsoid->axes.x, at.y/ellipsoid->axes.y, at.z/ellipsoid->axes.z);
+    at = demi_v(at.x*ellipsoid->axes.x, at.y*ellipsoid->axes.y, at.z*ellipsoid->axes.z);
     if (W0 > 1 && !((double)demi_length(at)*(1 - 1/W0) <
                     (double)demi_range(w, p->radius + q->radius))) return 0;
-    c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
-    demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
+    c->normal = demi_unit(dem_quat_rotate(ellipsoid->q, W0 < 0 ? demi_scale(n, -1) : n));
+    demi_ellipsoid_overlap(w, ellipsoid, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
-    c->arm_a = dem_quat_rotate(egg->q, at);
+    c->arm_a = dem_quat_rotate(ellipsoid->q, at);
     demi_kept_odd(c)->outset = demi_v(0, 0, 0);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
@@ -62,7 +61,7 @@ static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const 
                                   dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
     const int ball = p->kind == DEMI_BALL || q->kind == DEMI_BALL;
     (void)lambda; (void)spots;
-    if (!(ball ? demi_solid_ball_touch : demi_solid_egg_touch)(w, p, q, gap, c)) return 0;
+    if (!(ball ? demi_solid_ball_touch : demi_solid_ellipsoid_touch)(w, p, q, gap, c)) return 0;
     c->arm_a = demi_add(c->arm_a, p->centre);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
@@ -147,8 +146,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
     overlap = (w->desc.planar ? demi_prisms_press : demi_solids_press)(&a, &b, &s) &&
-        demi_pressure_patch(&s, &p->q, &q->q, &at)
-        ? demi_shared_overlap(s.shared, r_eff) : 0;
+        demi_pressure_patch(&s, &p->q, &q->q, &at) ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;
     c->overlap = (dem_real)overlap;

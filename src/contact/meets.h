@@ -33,10 +33,10 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
 }
 /* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
    be a sphere. p, q: the two; not read if the overlap is the conservative one. */
-DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const demi_part *p,
-                              const demi_part *q, demi_kept *c) {
+DEM_INLINE void demi_ellipsoids_set(const dem_world *w, demi_ellipsoid_tile *t, int k,
+                                    const demi_part *p, const demi_part *q, demi_kept *c) {
     c->lambda = t->to[k];
-    c->normal = demi_d3_real(demi_eggs_at(t->normal, k));
+    c->normal = demi_d3_real(demi_ellipsoids_at(t->normal, k));
     c->deep = (dem_real)t->deep[k];
     c->overlap = (dem_real)t->overlap[k];
     c->r_eff = (dem_real)t->r_eff[k];
@@ -47,23 +47,23 @@ DEM_INLINE void demi_eggs_set(const dem_world *w, demi_egg_tile *t, int k, const
         c->r_eff = (dem_real)(ra*rb/(ra + rb));
         /* across a gap there is no chord */
         c->overlap = (dem_real)(w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD && t->w0[k] < 1
-            ? demi_eggs_chord(t, k) : (1 - t->w0[k])*both);
+            ? demi_ellipsoids_chord(t, k) : (1 - t->w0[k])*both);
     }
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c,
                                  demi_spots *spots) {
-    demi_egg_tile t;
-    dem_real thin = demi_egg_put(&t, 0, 0, p->q, demi_part_axes(p));
+    demi_ellipsoid_tile t;
+    dem_real thin = demi_ellipsoid_put(&t, 0, 0, p->q, demi_part_axes(p));
     (void)spots;
-    thin += demi_egg_put(&t, 0, 1, q->q, demi_part_axes(q));
+    thin += demi_ellipsoid_put(&t, 0, 1, q->q, demi_part_axes(q));
     t.equal[0][0] = demi_part_equal(p);
     t.equal[1][0] = demi_part_equal(q);
-    demi_eggs_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
-    demi_eggs_solve_one(&t, 0);
-    if (!demi_eggs_meet(&t, 0)) return 0;
-    demi_eggs_set(w, &t, 0, p, q, c);
-    c->arm_a = demi_add(p->centre, demi_d3_real(demi_eggs_at(t.point, 0)));
+    demi_ellipsoids_row(&t, 0, gap, lambda, (double)demi_range(w, p->radius + q->radius), thin);
+    demi_ellipsoids_solve_one(&t, 0);
+    if (!demi_ellipsoids_meet(&t, 0)) return 0;
+    demi_ellipsoids_set(w, &t, 0, p, q, c);
+    c->arm_a = demi_add(p->centre, demi_d3_real(demi_ellipsoids_at(t.point, 0)));
     /* to the same point, exactly: conserves angular momentum */
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
@@ -73,8 +73,8 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
    is l (1 - W0), where l includes `edge`, or is measured along the normal. The arm leads to the
    deepest point, as for a sphere. The gradient of l (1 - W0) passes through the point of the wall,
    at W0 times the arm. */
-static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real left, dem_real edge,
-                             demi_kept *c) {
+static void demi_ellipsoid_overlap(const dem_world *w, const demi_part *p, dem_real left,
+                                   dem_real edge, demi_kept *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
     c->overlap = left*(h + edge);
     c->deep = c->overlap/h;

@@ -122,8 +122,7 @@ static void demi_member_coefs(const dem_world *w, demi_member_tile *m, int d, in
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
         dem_real *to = e == DEMI_CN ? m->base[0] : e == DEMI_CT ? m->base[1]
             : e == DEMI_CN_ROOT ? m->base[2] : e == DEMI_CT_ROOT ? m->base[3]
-            : e == DEMI_M_EFF ? m->base[4]
-            : m->t.rows.coef[e];
+            : e == DEMI_M_EFF ? m->base[4] : m->t.rows.coef[e];
         const dem_real *own = demi_many_species(w) ? w->near.coef +
             (base*DEMI_PAIR_COLUMNS + (size_t)e*stride) : 0;
         const dem_real *table = w->species_coef + e;
@@ -212,33 +211,17 @@ DEMI_CLONES static void demi_member_weigh(demi_kept_tile *DEMI_RESTRICT t, int f
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
-/* Calls the user-defined law for each contact of a tile, once more at zero closing speed for the
-   elastic force of merged contacts. */
+/* Calls the user-defined law for each contact of a tile, first at rest for merged contacts. */
 static void demi_member_law(const dem_world *w, demi_member_tile *m) {
-    demi_tile *rows = &m->t.rows;
     const demi_same same = m->run.same;
-    dem_real memory[DEMI_MEMORY];
-    dem_contact_force f;
     dem_contact c;
-    int q, again;
+    int q, rests;
     demi_who_clear(&c.who);
     for (q = 0; q < m->count; q++)
-        for (again = m->merged[q]; again >= 0; again--) {
-            demi_tile_own(rows, &m->run, &same, q, w->desc.law_who, &c);
-            if (again) c.closing_speed = 0;
-            demi_recall(rows, q, 0, m->run.keep, memory);
-            demi_law(w, &c, memory, &f);
-            if (again) { m->t.still[q] = f.normal; continue; }
-            demi_keep(rows, q, 0, m->run.keep, memory);
-            demi_normal_put(rows, &same, q, &f, 2);
-            demi_tangent_put(rows, &same, q, &f, 2);
-            demi_rolling_put(rows, &same, q, &f, 2);
+        for (rests = m->merged[q]; rests >= 0; rests--) {
+            demi_tile_own(&m->t.rows, &m->run, &same, q, w->desc.law_who, &c);
+            demi_row_law(w, &m->t.rows, &m->run, q, &c, rests ? &m->t.still[q] : 0);
         }
-}
-/* Vector, m, from the centre of body a to that of b. */
-DEM_INLINE dem_vec3 demi_member_branch(const demi_member_tile *m, int q) {
-    return demi_add(demi_rows_at(&m->t.rows.gap, q),
-                    demi_sub(demi_rows_at(&m->t.arm[0], q), demi_rows_at(&m->t.arm[1], q)));
 }
 /* Evaluates the contacts of a tile: forces and torques about the centres of the spheres. */
 static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d) {
@@ -256,7 +239,7 @@ static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d)
     if (r->following) demi_member_fetch(w, m, base, full, 1);
     else demi_member_fetch(w, m, base, full, 0);
     for (q = 0; q < full && w->cell.on; q++) {
-        const dem_vec3 branch = demi_member_branch(m, q);
+        const dem_vec3 branch = demi_tile_branch(rows, &m->span, q);
         demi_rows_flow(w, &rows->rate, q, branch);
         if (r->following) demi_rows_flow(w, &rows->gone, q, branch);
     }
@@ -295,22 +278,13 @@ static void demi_member_begin(const dem_world *w, demi_member_tile *m, int d, de
     m->span.b = m->b;
     m->span.k = m->k;
     m->span.ball = m->ball[0];
+    m->span.share = m->t.share;
+    m->span.arm = m->t.arm;
     demi_member_clear(m);
     demi_tile_begin(w, d, &m->t.rows);
     m->p[0] = demi_near_first(&w->domains[d]);
     demi_member_coefs(w, m, d, DEMI_TILE, 1);
     memset(m->t.rows.moment, 0, sizeof m->t.rows.moment);
-}
-/* Adds the rates of user-defined numbers of row q to both bodies. */
-static DEMI_APART void demi_member_rates(dem_world *w, const demi_member_tile *m, int q, int send) {
-    const int n = w->bodies.real_count;
-    dem_real *b = send ? w->cross_rate + (size_t)n*(size_t)m->k[q] : w->bodies.rates + n*m->b[q];
-    int k;
-    for (k = 0; k < n; k++) {
-        const dem_real *gains = m->t.rows.gains[q];
-        w->bodies.rates[n*m->a[q] + k] += m->t.share[q]*gains[k];
-        b[k] += m->t.share[q]*gains[DEM_BODY_REALS + k];
-    }
 }
 /* Turns the torques of a tile about the centres of its spheres into those on the bodies. */
 DEMI_CLONES static void demi_member_torques(demi_member_tile *DEMI_RESTRICT m, int turning,
@@ -328,40 +302,17 @@ DEMI_CLONES static void demi_member_torques(demi_member_tile *DEMI_RESTRICT m, i
 /* Evaluates a tile, adds its forces to both bodies and stores its histories. send: 1 if the bodies
    b are of later work groups, so that forces on them go to slots. */
 static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int send) {
-    demi_domain *domain = &w->domains[d];
-    demi_tile *rows = &m->t.rows;
     const size_t stride = (size_t)w->near.stride;
-    dem_real *DEMI_RESTRICT force = w->bodies.force, *DEMI_RESTRICT torque = w->bodies.torque;
-    const int full = (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    demi_tally tally = {0, 0};
     int q, e;
     if (!m->count) return;
     demi_member_evaluate(w, m, d);
-    demi_member_torques(m, m->run.turning, full);
-    if (!send) demi_scatter(rows, &m->span, force, torque, 1, 1);
-    for (q = 0; q < m->count && send; q++) {
-        dem_real *slot = w->cross_force + 6*(size_t)m->k[q];
-        const dem_vec3 f = demi_row(rows->force, q);
-        demi_force_add(force + 4*m->a[q], f);
-        demi_force_add(torque + 4*m->a[q], demi_row(rows->torque[0], q));
-        demi_force_add(slot, demi_scale(f, -1));
-        demi_force_add(slot + 3, demi_row(rows->torque[1], q));
-    }
-    for (q = 0; q < m->count && demi_exchanges(w); q++) demi_member_rates(w, m, q, send);
+    demi_member_torques(m, m->run.turning, (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES);
     for (e = 0; e < m->run.keep; e++) {
         dem_real *memory = w->near.memory + ((size_t)d*(size_t)w->memory_stride + (size_t)e)*stride;
-        for (q = 0; q < m->count; q++) memory[m->p[q]] = rows->memory[e][q];
+        for (q = 0; q < m->count; q++) memory[m->p[q]] = m->t.rows.memory[e][q];
     }
-    for (q = 0; q < m->count && w->cell.on; q++)
-        if (rows->touch[q] > 0)
-            demi_tile_cell(w, rows, q, demi_member_branch(m, q), m->t.share[q], domain->cell);
-    demi_tile_tally(rows, m->count, &tally);
-    if (m->run.ranged) tally.contacts -= (dem_real)demi_tile_apart(rows, m->count);
-    domain->contacts += (int)tally.contacts;
-    domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
-    if (m->run.ledger && w->bodies.booked) demi_tile_late(w, &m->span, full, rows);
-    if (m->run.ledger) demi_tile_book(rows, m->count, domain->energy);
-    if (w->events.n.on) demi_tile_note(w, d, rows, &m->span, &m->run);
+    demi_tile_finish(w, d, &m->t.rows, &m->span, &m->run, send,
+                     w->events.n.on ? demi_tile_note : 0);
     if (m->weighted) demi_member_clear(m);
     m->count = 0;
 }

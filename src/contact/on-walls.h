@@ -220,8 +220,7 @@ static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, de
             out[count].share = wall->share*(dem_real)how;
             out[count].overlap = r - dist;
             out[count].point = demi_v(d.x*a, d.y*a, b);
-            out[count].normal = dist > 0
-                ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
+            out[count].normal = dist > 0 ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
             count++;
         }
         before = end;

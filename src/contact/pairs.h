@@ -7,25 +7,28 @@
    done, in list order. The order of every sum is thus independent of the number of threads.
    --------------------------------------------------------------------------------------------- */
 
-/* Fills in c->who for pair q. */
+/* Fills in `who` for a law that has desc.law_who set, for bodies a and b; b < 0: wall -1 - b, of
+   which the grains have the radius rb. arm: m, from a's centre to the contact point. */
+static void demi_who_fill(const dem_world *w, int a, int b, dem_real ra, dem_real rb, dem_vec3 arm,
+                          dem_real *rates, dem_contact_who *who) {
+    const demi_periods periods = demi_periods_of(w);
+    who->a = dem_body_id_get(w, a);
+    who->radius_a = ra;
+    who->mass_a = w->bodies.mass[a];
+    who->radius_b = rb;
+    if (b >= 0) who->b = dem_body_id_get(w, b);
+    if (b >= 0) who->mass_b = w->bodies.mass[b];
+    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), arm));
+    who->time = w->clock.time;
+    demi_who_reals(w, a, DEMI_MAX(b, -1), b < 0 ? -1 - b : 0, rates, who);
+}
+/* The same for pair q. */
 static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
                                      dem_real *rates, dem_contact *c) {
-    const dem_world *w = r->w;
-    const int a = r->span->a[q], b = r->span->b[q];
-    const demi_periods periods = demi_periods_of(w);
     const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
-    const dem_vec3 arm = r->span->ball
-        ? demi_at(w->bodies.centre + 4*r->span->ball[q]) : demi_v(0, 0, 0);
-    c->who.a = dem_body_id_get(w, a);
-    c->who.b = dem_body_id_get(w, b);
-    c->who.radius_a = ra;
-    c->who.radius_b = rb;
-    c->who.mass_a = w->bodies.mass[a];
-    c->who.mass_b = w->bodies.mass[b];
-    c->who.point = demi_place_of(&periods, demi_add(demi_add(demi_at(w->bodies.pos + 4*a), arm),
-        demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb))));
-    c->who.time = w->clock.time;
-    demi_who_reals(w, a, b, 0, rates, &c->who);
+    const dem_vec3 arm = demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb));
+    demi_who_fill(r->w, r->span->a[q], r->span->b[q], ra, rb, r->span->ball ? demi_add(arm,
+        demi_at(r->w->bodies.centre + 4*r->span->ball[q])) : arm, rates, &c->who);
 }
 /* Fills a dem_contact from row q for a user-defined law. */
 DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
@@ -328,7 +331,7 @@ static DEMI_APART void demi_tile_flow(const demi_run *r, int count, demi_tile *t
 }
 /* Evaluates a tile with one of two runs, and returns that run. */
 static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
-                                   demi_tile *DEMI_RESTRICT t, double *energy) {
+                                   demi_tile *DEMI_RESTRICT t) {
     const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     demi_run *r = demi_tile_coefs(w, span, full, t, run);
     int q, k;
@@ -344,30 +347,29 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
         for (k = span->count/DEMI_LANES*DEMI_LANES; k < span->count; k++)
             memory[k] = t->memory[q][k];
     }
-    if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
-    if (r->ledger) demi_tile_book(t, span->count, energy);
     return r;
 }
 
-/* Results of tiles other than forces: largest relative overlap, number of contacts. */
-typedef struct demi_tally { dem_real deepest, contacts; } demi_tally;
-/* count: without the pairs that pad the last group. */
-static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_tally *sum) {
+/* Adds the contacts of a tile to the number and the largest relative overlap of its work group.
+   ranged: contacts also act across a gap, and those that do so do not count. */
+static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, int ranged,
+                            demi_domain *sum) {
+    dem_real deepest = 0, contacts = 0;
     int q;
     for (q = 0; q < count; q++) {
-        sum->deepest = t->deep[q] > sum->deepest ? t->deep[q] : sum->deepest;
-        sum->contacts += t->touch[q];
+        deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
+        contacts += t->touch[q];
     }
-}
-/* Number of a tile's pairs within the range of the law that do not touch. */
-static int demi_tile_apart(const demi_tile *t, int count) {
-    int q, apart = 0;
-    for (q = 0; q < count; q++) apart += t->touch[q] > 0 && !(t->overlap[q] > 0);
-    return apart;
+    for (q = 0; q < count && ranged; q++) contacts -= t->touch[q] > 0 && !(t->overlap[q] > 0);
+    sum->contacts += (int)contacts;
+    sum->overlap = DEMI_MAX(sum->overlap, (double)deepest);
 }
 DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) {
     x += sum[0]; y += sum[1]; z += sum[2];
     sum[0] = x; sum[1] = y; sum[2] = z;
+}
+DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
+    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
 }
 /* Adds a tile's forces to both bodies. */
 DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
@@ -393,28 +395,29 @@ DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
 static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                               const demi_run *r, dem_real *DEMI_RESTRICT force,
                               dem_real *DEMI_RESTRICT torque) {
-    if (r->parting) demi_scatter(t, span, force, torque, 1, 1);
+    if (r->parting || span->ball) demi_scatter(t, span, force, torque, 1, 1);
     else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
     else demi_scatter(t, span, force, torque, 0, 0);
 }
 /* The same for pairs with later work groups: forces on b stay in slots `out`, six reals for each
-   candidate. */
+   candidate. Several pairs of clusters add to one slot, which was cleared before. */
 static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                                const demi_run *r, dem_real *DEMI_RESTRICT force,
                                dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT slots) {
-    const int second = r->parting ? 1 : 0;
+    const int turning = r->turning || span->ball, second = r->parting || span->ball;
     int q;
     for (q = 0; q < span->count; q++) {
         dem_real *out = slots + 6*(size_t)span->k[q];
-        dem_real *fa = DEMI_AT(force, span->a[q]), *ma = DEMI_AT(torque, span->a[q]);
         const dem_vec3 f = demi_row(t->force, q);
-        fa[0] += f.x; fa[1] += f.y; fa[2] += f.z;
-        out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
-        if (r->turning) {
-            const dem_vec3 m = demi_row(t->torque[0], q);
-            ma[0] += m.x; ma[1] += m.y; ma[2] += m.z;
-            demi_put(out + 3, demi_row(t->torque[second], q));
+        demi_force_add(DEMI_AT(force, span->a[q]), f);
+        if (turning) demi_force_add(DEMI_AT(torque, span->a[q]), demi_row(t->torque[0], q));
+        if (span->ball) {
+            demi_force_add(out, demi_scale(f, -1));
+            demi_force_add(out + 3, demi_row(t->torque[1], q));
+            continue;
         }
+        out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
+        if (turning) demi_put(out + 3, demi_row(t->torque[second], q));
     }
 }
 
@@ -427,11 +430,12 @@ static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span
     for (q = 0; q < span->count; q++) {
         dem_real *a = w->bodies.rates + n*span->a[q];
         dem_real *b = out ? out + (size_t)n*(size_t)span->k[q] : w->bodies.rates + n*span->b[q];
-        const int touch = t->touch[q] > 0;
+        const int touch = t->touch[q] > 0, sets = out && !span->ball;
+        const dem_real share = span->share ? span->share[q] : 1;
         for (k = 0; k < n; k++) {
-            if (touch) a[k] += t->gains[q][k];
-            if (out) b[k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
-            else if (touch) b[k] += t->gains[q][DEM_BODY_REALS + k];
+            if (touch) a[k] += share*t->gains[q][k];
+            if (sets) b[k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
+            else if (touch) b[k] += share*t->gains[q][DEM_BODY_REALS + k];
         }
     }
 }
@@ -446,17 +450,43 @@ DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, de
                       t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
                       (double)t->overlap[q], (double)share);
 }
+/* Vector of row q from the centre of body a to that of b, m. */
+DEM_INLINE dem_vec3 demi_tile_branch(const demi_tile *t, const demi_span *span, int q) {
+    const dem_vec3 gap = demi_rows_at(&t->gap, q);
+    return !span->arm ? gap : demi_add(gap, demi_sub(demi_rows_at(&span->arm[0], q),
+                                                     demi_rows_at(&span->arm[1], q)));
+}
+/* Called for every tile when its forces are known. */
+typedef void (*demi_tile_fn)(dem_world *w, int d, demi_tile *t, const demi_span *span,
+                             const demi_run *r);
+/* Adds what the contacts of a tile give to bodies, or to the slots of bodies of later work groups
+   (send), to the cell, the ledger and the counts of the work group. note: or null. */
+DEM_INLINE void demi_tile_finish(dem_world *w, int d, demi_tile *t, const demi_span *span,
+                                 const demi_run *r, int send, demi_tile_fn note) {
+    const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_domain *domain = &w->domains[d];
+    int q;
+    if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
+    if (r->ledger) demi_tile_book(t, span->count, domain->energy);
+    demi_tile_tally(t, span->count, r->ranged, domain);
+    if (!send) demi_tile_scatter(t, span, r, w->bodies.force, w->bodies.torque);
+    else demi_tile_send(t, span, r, w->bodies.force, w->bodies.torque, w->cross_force);
+    if (demi_exchanges(w)) demi_tile_rates(t, span, w, send ? w->cross_rate : 0);
+    for (q = 0; q < span->count && w->cell.on; q++)
+        if (t->touch[q] > 0)
+            demi_tile_cell(w, t, q, demi_tile_branch(t, span, q), span->share ? span->share[q] : 1,
+                           domain->cell);
+    if (note) note(w, d, t, span, r);
+}
 /* Computes all pairs of a work group: those inside it, then those with later groups. In a world
-   with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the others.
-   note: called for every tile when its forces are known, or null. */
-DEM_INLINE void demi_pairs_with(dem_world *w, int d, void (*note)(dem_world *w, int d, demi_tile *t,
-                                             const demi_span *span, const demi_run *r)) {
+   with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the
+   others. */
+DEM_INLINE void demi_pairs_with(dem_world *w, int d, demi_tile_fn note) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */
     demi_run run[2];
     DEMI_ALIGNED demi_tile tile;
-    demi_tally tally = {0, 0};
-    int l, p, q;
+    int l, p;
     domain->contacts = 0;
     if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
     run[0] = demi_run_of(w, dt, 0);
@@ -469,20 +499,9 @@ DEM_INLINE void demi_pairs_with(dem_world *w, int d, void (*note)(dem_world *w, 
         for (p = begin; p < end; p += DEMI_TILE) {
             const int count = DEMI_MIN((int)DEMI_TILE, end - p);
             const demi_span span = demi_span_of(w, d, p, count);
-            const demi_run *r = demi_tile_respond(w, &span, run, &tile, domain->energy);
-            demi_tile_tally(&tile, count, &tally);
-            if (r->ranged) tally.contacts -= (dem_real)demi_tile_apart(&tile, count);
-            if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
-            else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque, w->cross_force);
-            if (demi_exchanges(w)) demi_tile_rates(&tile, &span, w, l ? w->cross_rate : 0);
-            for (q = 0; q < count && w->cell.on; q++)
-                if (tile.touch[q] > 0)
-                    demi_tile_cell(w, &tile, q, demi_rows_at(&tile.gap, q), 1, domain->cell);
-            if (note) note(w, d, &tile, &span, r);
+            demi_tile_finish(w, d, &tile, &span, demi_tile_respond(w, &span, run, &tile), l, note);
         }
     }
-    domain->contacts = (int)tally.contacts;
-    domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
 }
 static void demi_pairs(dem_world *w, int d) { demi_pairs_with(w, d, 0); }
 

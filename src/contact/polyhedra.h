@@ -539,15 +539,15 @@ static double demi_solid_near(const demi_solid *s, demi_d3 x, demi_d3 *q) {
     }
     return least < 1e299 ? least : inside;
 }
-/* Sets s to polyhedron p scaled so that the ellipsoid `egg` at `at` is the unit sphere about the
+/* Sets s to polyhedron p scaled so that the ellipsoid at `at` is the unit sphere about the
    origin. */
-static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec3 at,
+static void demi_solid_measure(const demi_part *p, const demi_part *ellipsoid, dem_vec3 at,
                                demi_solid *s) {
-    const demi_d3 axes = demi_d3_of(egg->axes);
+    const demi_d3 axes = demi_d3_of(ellipsoid->axes);
     double R[9], back[9];
     int i, k;
     demi_solid_of(p, at, s);
-    demi_rotation_of(egg->q, R);
+    demi_rotation_of(ellipsoid->q, R);
     for (i = 0; i < 9; i++) back[i] = R[i%3*3 + i/3];
     for (i = -1; i < s->corners; i++) {
         demi_d3 *x = i < 0 ? &s->centre : &s->corner[i];

@@ -52,6 +52,8 @@ typedef struct demi_span {
     const int32_t *row;            /* of the table of species, or null */
     const dem_real *coef;          /* columns likewise; row and coef are null if all are alike */
     const int32_t *ball;           /* of clusters: spheres of a, else null */
+    const dem_real *share;         /* of clusters: weights of the pairs */
+    const demi_rows *arm;          /* m, of clusters: centres of the spheres of a, those of b */
     size_t stride;
     int count;
 } demi_span;
@@ -68,6 +70,8 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     s.row = w->effects.uniform || demi_many_species(w) ? 0 : near->row + at;
     s.coef = demi_many_species(w) ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
     s.ball = 0;
+    s.share = 0;
+    s.arm = 0;
     s.stride = stride;
     s.count = count;
     return s;

@@ -85,8 +85,7 @@ typedef struct demi_near {
 enum { DEMI_M_EFF = DEMI_COEFS,
       DEMI_TILE_COLUMNS,                        /* those that stages read; the others: */
       DEMI_CN_ROOT = DEMI_TILE_COLUMNS,         /* of clusters: see demi_coefficients_rooted */
-      DEMI_CT_ROOT,
-      DEMI_PAIR_COLUMNS };
+      DEMI_CT_ROOT, DEMI_PAIR_COLUMNS };
 /* A species: spheres that are equal in everything that coefficients depend on. For up to
    DEMI_SPECIES species a table has a row of coefficients for every two of them. With more (radii
    drawn at random), every pair of the pruned list stores its own coefficients. */

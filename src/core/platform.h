@@ -97,9 +97,9 @@ static void demi_parallel(dem_world *w, int threads, int count, const double *mi
 }
 /* 1: worlds use as many threads as their desc says. See >>team. */
 #ifdef DEM_THREADS_FIXED
-enum { DEMI_CREW_FIXED = 1 };
+enum { DEMI_THREADS_FIXED = 1 };
 #else
-enum { DEMI_CREW_FIXED = !DEMI_OPENMP };
+enum { DEMI_THREADS_FIXED = !DEMI_OPENMP };
 #endif
 /* Number of threads to use if desc.threads is 0. */
 static int demi_threads_available(void) {

@@ -218,14 +218,14 @@ typedef struct demi_output {
    demi_calls has changed it, so that demi_called restores it. */
 typedef struct demi_calling { const char *who; int within, set; } demi_calling;
 
-/* How many threads a world uses, see demi_crew_judge. Not part of the state. */
-typedef struct demi_crew {
+/* How many threads a world uses, see demi_threads_judge. Not part of the state. */
+typedef struct demi_threads {
     int now, best;                 /* threads of this step; of steps outside trials */
     int steps, turn, fixed;        /* steps measured; kind of the last trial; 1: no trials */
     double begun, sum, cost;       /* s: start of the step; time of `steps`; per step with `best` */
     double since, wait;            /* s: since the last trial, until the next one */
     uint64_t rebuilds;             /* when this step began */
-} demi_crew;
+} demi_threads;
 
 /* Observers of a run: outputs, replays, progress. Not part of the state, except `written` of
    outputs: reading a checkpoint does not change them. */
@@ -247,8 +247,8 @@ typedef struct demi_lookers {
 /* Data of the solvers for impulses, set up again in every step (>>impulses). demi_meeting: the
    constraint of a contact. demi_impulse: the same contact as solvers iterate over it. demi_beside:
    its data that sweeps do not need. demi_twist: its rolling and spinning friction. demi_mover:
-   velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_knot: a body or
-   joint in the linear system of all joints. */
+   velocities of a body or wall point as solvers see them. demi_rod: a joint. demi_joint_node: a
+   body or joint in the linear system of all joints. */
 struct demi_meeting;
 struct demi_impulse;
 struct demi_beside;
@@ -256,7 +256,7 @@ struct demi_twist;
 struct demi_mover;
 struct demi_run_sums;
 struct demi_rod;
-struct demi_knot;
+struct demi_joint_node;
 struct demi_link_of;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
@@ -276,11 +276,11 @@ typedef struct demi_solver {
     struct demi_run_sums *runs;    /* sums over each run of contacts, a block of one colour */
     struct demi_rod *rods;         /* one per joint */
     int32_t *joined;               /* of each body: its first joint, see demi_joined */
-    struct demi_knot *knots;       /* unknowns of the joints' linear system: bodies and joints */
-    int32_t *knot_of, *rows;       /* knot of each body; row of each entry of the factor */
+    struct demi_joint_node *nodes; /* unknowns of the joints' linear system: bodies and joints */
+    int32_t *node_of, *rows;       /* node of each body; row of each entry of the factor */
     struct demi_link_of *links;
     double *blocks;                /* x 36: pivots of the factor, and entries below them */
-    int knot_count, row_count, link_count, factored;
+    int node_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; range of the colour being swept; its first run */
     int limited;                   /* contacts at their friction limit in the last unsolved step */
     int twisted;                   /* 1: there is rolling or spinning friction */
@@ -437,7 +437,7 @@ struct dem_world {
     double wall_fastest;           /* m/s, fastest wall point of the step */
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* 1: some wall repeats along a periodic axis */
-    demi_crew crew;                /* >>team: threads in use */
+    demi_threads threads;                /* >>team: threads in use */
     int facets_valid;              /* surfaces fit the walls and their motions */
     int sheeted;                   /* 1: some surface may be a sheet */
     int facets_given;              /* for tests: facets in one plane are not merged */
@@ -456,7 +456,7 @@ struct dem_world {
     int written_count;             /* >>output: outputs in the checkpoint that was read last */
     demi_written *written;
     struct demi_sphere *crowd;     /* >>placing: occupancy tree of spheres, and its nodes */
-    struct demi_node *crowd_nodes;
+    struct demi_crowd_node *crowd_nodes;
     dem_real *crowd_turned;        /* x 4: orientations of the bodies placed */
     double dt_share;               /* trials: factor on the automatic time step; 0: 1 */
     struct demi_press *press;      /* loads on bodies, while >>advice chooses the time step */
@@ -594,7 +594,7 @@ DEM_INLINE dem_real demi_radius(const dem_world *w, int i) { return w->bodies.po
    on several threads cannot. */
 static void demi_domains_do(dem_world *w, demi_task task) {
     const demi_calling was = demi_calls(w, "a step", 1);
-    demi_parallel(w, w->crew.now, w->domain_count, w->domain_middle, task);
+    demi_parallel(w, w->threads.now, w->domain_count, w->domain_middle, task);
     demi_called(w, was);
 }
 /* A wall's id is its index in `walls`, from 1, plus DEMI_WALLS_MOST for every earlier wall at this

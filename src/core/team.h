@@ -5,7 +5,7 @@
    exchange data of ghost particles and agree on maxima and failures. A single world has no team and
    is its own only member: an exchange then does nothing, and an agreement returns the member's own
    numbers. struct demi_team in >>layout lists the functions of a team; >>slabs-step provides them
-   for slabs. At the end, the number of threads of a single world. Owns w->crew.
+   for slabs. At the end, the number of threads of a single world. Owns w->threads.
    --------------------------------------------------------------------------------------------- */
 
 /* Return the number of members in this process, and member k. In all parts `h` is the head of a
@@ -48,23 +48,23 @@ static void demi_dt_share(dem_world *h) {
    time; after a successful one it tries again at once. Trials take at most some 5 % of the time.
    Steps with a rebuild are not counted. With DEM_THREADS_FIXED the number is that of the
    desc. --- */
-enum { DEMI_CREW_STEPS = 12 };                  /* steps of a trial */
+enum { DEMI_THREADS_STEPS = 12 };                  /* steps of a trial */
 /* True if the number of threads of a world is to be chosen. */
-static int demi_crew_varies(const dem_world *h) {
-    return !h->crew.fixed && !h->team && h->desc.threads > 1;
+static int demi_threads_varies(const dem_world *h) {
+    return !h->threads.fixed && !h->team && h->desc.threads > 1;
 }
-static void demi_crew_begin(dem_world *h) {
+static void demi_threads_begin(dem_world *h) {
     int k;
     for (k = 0; k < demi_members(h); k++) {
-        demi_crew *c = &demi_member(h, k)->crew;
+        demi_threads *c = &demi_member(h, k)->threads;
         if (!c->best) c->best = c->now = demi_member(h, k)->desc.threads;
     }
-    h->crew.rebuilds = h->clock.rebuilds;
-    if (demi_crew_varies(h)) h->crew.begun = demi_clock();
+    h->threads.rebuilds = h->clock.rebuilds;
+    if (demi_threads_varies(h)) h->threads.begun = demi_clock();
 }
 /* The number of threads to try next: half as many as now, one, or twice as many, in turns. `slow`:
    steps have become slower, perhaps since another program keeps cores busy. */
-static int demi_crew_other(demi_crew *c, int most, int slow) {
+static int demi_threads_other(demi_threads *c, int most, int slow) {
     int k, n = c->best;
     for (k = 0; k < 3 && n == c->best; k++) {
         c->turn = slow && !k ? 1 : (c->turn + 1)%3;
@@ -73,14 +73,14 @@ static int demi_crew_other(demi_crew *c, int most, int slow) {
     return n;
 }
 /* Starts a measurement with `now` threads, which may be `best`. */
-static void demi_crew_try(demi_crew *c, int now) {
+static void demi_threads_try(demi_threads *c, int now) {
     c->now = now;
     c->steps = 0;
     c->sum = 0;
 }
 /* Decides by the time of a step, s, how many threads take the next one. */
-static void demi_crew_judge(dem_world *w, double took) {
-    demi_crew *c = &w->crew;
+static void demi_threads_judge(dem_world *w, double took) {
+    demi_threads *c = &w->threads;
     const int first = !(c->cost > 0), trial = c->now != c->best;
     double lost;
     if (!trial) c->since += took;
@@ -90,7 +90,7 @@ static void demi_crew_judge(dem_world *w, double took) {
     lost = c->sum - c->steps*c->cost;
     if (trial) {
         const int worse = lost > 4*c->cost;
-        if (!worse && c->steps < DEMI_CREW_STEPS) return;
+        if (!worse && c->steps < DEMI_THREADS_STEPS) return;
         c->wait = DEMI_MAX(20*lost, DEMI_MAX(400*c->cost, DEMI_MIN(2*c->wait, 10)));
         if (!worse && c->sum < 0.97*c->steps*c->cost) {
             c->best = c->now;
@@ -98,15 +98,15 @@ static void demi_crew_judge(dem_world *w, double took) {
             c->wait = 0;                        /* perhaps farther the same way */
         }
         c->since = 0;
-        demi_crew_try(c, c->best);
+        demi_threads_try(c, c->best);
     } else {
-        const int slow = !first && lost > 2*DEMI_CREW_STEPS*c->cost;
-        if (c->steps < (first ? 2 : DEMI_CREW_STEPS) && !slow) return;
+        const int slow = !first && lost > 2*DEMI_THREADS_STEPS*c->cost;
+        if (c->steps < (first ? 2 : DEMI_THREADS_STEPS) && !slow) return;
         c->cost = first ? c->sum/c->steps : (c->cost + c->sum/c->steps)/2;
-        demi_crew_try(c, first || slow || c->since > c->wait
-                      ? demi_crew_other(c, w->desc.threads, slow) : c->best);
+        demi_threads_try(c, first || slow || c->since > c->wait
+                      ? demi_threads_other(c, w->desc.threads, slow) : c->best);
     }
 }
-static void demi_crew_end(dem_world *w) {
-    if (demi_crew_varies(w)) demi_crew_judge(w, demi_clock() - w->crew.begun);
+static void demi_threads_end(dem_world *w) {
+    if (demi_threads_varies(w)) demi_threads_judge(w, demi_clock() - w->threads.begun);
 }

@@ -75,7 +75,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->bodies.backward = w->bodies.backward;
     t->bodies.booked = w->bodies.booked;
     t->events.desc = w->events.desc;
-    t->crew = w->crew;
+    t->threads = w->threads;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);
@@ -449,8 +449,7 @@ static int demi_twin_lists_room(dem_world *t) {
         const demi_domain *o = &t->domains[d];
         const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
                               t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
-                                  ? o->walls : 0,
-                              t->domain_count > 1};
+                                  ? o->walls : 0, t->domain_count > 1};
         for (k = 0; k < 5; k++) most[k] = DEMI_MAX(most[k], counts[k]);
         crowd[d] = o->kept;
     }

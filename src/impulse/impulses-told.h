@@ -26,7 +26,7 @@ static dem_result demi_impulses_settle(dem_world *w) {
    memory ran out. */
 static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
-    const size_t vectors = (size_t)demi_solvers[w->desc.solver].vectors;
+    const demi_solver_row *solver = &demi_solvers[w->desc.solver];
     const size_t bodies = (size_t)w->bodies.count;
     size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
     int d;
@@ -39,10 +39,10 @@ static int demi_impulses_room(dem_world *w) {
     s->twisted = demi_impulses_twist(w);
     return DEMI_GROW(w, s->meetings, n) && DEMI_GROW(w, s->contacts, n) &&
         DEMI_GROW(w, s->beside, n) && DEMI_GROW(w, s->runs, n/DEMI_SWEEP_RUN + DEMI_COLOURS) &&
-        DEMI_GROW(w, s->movers, vectors ? 2*movers : movers) &&
+        DEMI_GROW(w, s->movers, solver->parts ? 2*movers : movers) &&
         DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
         (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
-        (!vectors || (DEMI_GROW(w, s->vectors, vectors*n) && DEMI_GROW(w, s->degrees, bodies))) &&
+        DEMI_GROW(w, s->vectors, (size_t)solver->vectors*n) && DEMI_GROW(w, s->degrees, bodies) &&
         (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
 }
 /* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
@@ -287,7 +287,7 @@ static void demi_impulses(dem_world *w) {
         for (i = 0; i < DEMI_TAMINGS && demi_impulses_tame(w, i == DEMI_TAMINGS - 1); i++)
             solved = demi_solvers[w->desc.solver].solve(w, most);
     }
-    if (demi_solvers[w->desc.solver].vectors && !demi_solved_open(w, &solved)) {
+    if (demi_solvers[w->desc.solver].parts && !demi_solved_open(w, &solved)) {
         demi_runs_all(w, demi_impulses_release);
         demi_colours_all(w, demi_vectors_apply);
     }

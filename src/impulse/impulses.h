@@ -141,7 +141,7 @@ static void demi_movers_lay(dem_world *w, int d) {
 typedef struct demi_rod {
     int32_t a, b, rows;            /* solver bodies; number of rows, 0: not in force */
     int32_t next[2];               /* next joint of a, and of b, see demi_solver.joined; -1: none */
-    int32_t knot, ends[2];         /* nodes of the joint, and of a and b; -1: prescribed motion */
+    int32_t node, ends[2];         /* nodes of the joint, and of a and b; -1: prescribed motion */
     int32_t stuck;                 /* sign of the torque of a motor at its limit; 0: below it */
     dem_vec3 arm[2];               /* m, lever arms from the centres of a and b */
     dem_vec3 along[3];             /* unit axes of the spin rows: two across the hinge, its own */
@@ -151,7 +151,7 @@ typedef struct demi_rod {
     dem_real most, torque;         /* N m s: limit of a motor of speed; impulse of one of torque */
 } demi_rod;
 /* Node of the linear system of all joints: a movable body with joints, or a joint in force. */
-typedef struct demi_knot {
+typedef struct demi_joint_node {
     int32_t mover, rod;            /* solver body or joint; the other is -1 */
     int32_t rank, order;           /* its position in the order of elimination; order of entry i
                                       of the array: which node is eliminated at position i */
@@ -168,11 +168,11 @@ typedef struct demi_knot {
     double spare;                  /* J: the part of bank that displacements may spend */
     double wide, closed;           /* m: largest gap; largest one that impulses may close */
     double x[6];                   /* right-hand side, then solution */
-    dem_quat turned;               /* of a body: orientation a step ahead, see demi_knots_ahead */
-    /* used by demi_knots_order: neighbours; queue of nodes with a degree of this index; number of
-       neighbours left; last node that marked it; see demi_knot_ready */
+    dem_quat turned;               /* of a body: orientation a step ahead, see demi_nodes_ahead */
+    /* used by demi_nodes_order: neighbours; queue of nodes with a degree of this index; number of
+       neighbours left; last node that marked it; see demi_node_ready */
     int32_t links, waiting, degree, mark, paid;
-} demi_knot;
+} demi_joint_node;
 /* Entry of a linked list of nodes; next -1: the last. */
 typedef struct demi_link_of { int32_t to, next; } demi_link_of;
 /* DEMI_GIVE: softness of joints over the inverse effective mass. DEMI_GIVE_LOOPS: the same in

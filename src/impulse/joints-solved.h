@@ -2,13 +2,13 @@
    >>joints-solved
    Direct solution of the joint constraints of >>joints: sparse block LDL' factorisation. This part
    has the elimination order, the blocks and their factor, sweeps, the energy guard and the results
-   (forces, power). A rod is a joint in one step. A knot is a node of the system: a body or a joint.
-   Owns rods, knots, links, rows and blocks of w->solver; writes w->joints, and displaces bodies to
+   (forces, power). A rod is a joint in one step. A node is a node of the system: a body or a joint.
+   Owns rods, nodes, links, rows and blocks of w->solver; writes w->joints, and displaces bodies to
    close gaps. Tests: tests/impulse/test_joints.c, tests/hard/hard_joints.c.
    --------------------------------------------------------------------------------------------- */
 
 /* Adds node `to` at the front of a linked list. Returns 0 if memory ran out. */
-static int demi_knot_link(dem_world *w, int32_t *list, int to) {
+static int demi_node_link(dem_world *w, int32_t *list, int to) {
     demi_solver *s = &w->solver;
     if (!DEMI_GROW(w, s->links, (size_t)s->link_count + 1)) return 0;
     s->links[s->link_count].to = to;
@@ -17,86 +17,86 @@ static int demi_knot_link(dem_world *w, int32_t *list, int to) {
     return 1;
 }
 /* Adds the node of a body (rod -1) or of a joint (mover -1), and returns its index. */
-static int demi_knot_add(demi_solver *s, int mover, int rod) {
-    demi_knot *k = s->knots + s->knot_count;
+static int demi_node_add(demi_solver *s, int mover, int rod) {
+    demi_joint_node *k = s->nodes + s->node_count;
     memset(k, 0, sizeof *k);
     k->mover = mover;
     k->rod = rod;
     k->links = k->waiting = k->rank = k->mark = -1;
-    k->group = s->knot_count;
-    return s->knot_count++;
+    k->group = s->node_count;
+    return s->node_count++;
 }
 /* Returns the root of a node's group of connected nodes (union-find with path halving). */
-static int demi_knot_group(demi_solver *s, int knot) {
-    while (s->knots[knot].group != knot)
-        knot = s->knots[knot].group = s->knots[s->knots[knot].group].group;
-    return knot;
+static int demi_node_group(demi_solver *s, int node) {
+    while (s->nodes[node].group != node)
+        node = s->nodes[node].group = s->nodes[s->nodes[node].group].group;
+    return node;
 }
 /* True if a node may be eliminated. A body always may. A joint may once one of its bodies was
    eliminated in its favour (`paid`; a body pays for one joint), or both were: only then does its
    pivot contain the compliance of a body. */
-static int demi_knot_ready(const demi_solver *s, const demi_knot *k) {
+static int demi_node_ready(const demi_solver *s, const demi_joint_node *k) {
     int e, gone = 1;
     if (k->rod < 0 || k->paid) return 1;
     for (e = 0; e < 2; e++) {
         const int end = s->rods[k->rod].ends[e];
-        gone &= end < 0 || s->knots[end].rank >= 0;
+        gone &= end < 0 || s->nodes[end].rank >= 0;
     }
     return gone;
 }
 /* Symbolic elimination of one node: its remaining neighbours become its column of the factor, and
    neighbours of each other (fill-in). Returns 0 if memory ran out. */
-static int demi_knot_eliminate(dem_world *w, int knot, int rank) {
+static int demi_node_eliminate(dem_world *w, int node, int rank) {
     demi_solver *s = &w->solver;
     const int first = s->row_count;
-    int i, j, e, paid = s->knots[knot].rod >= 0;
-    s->knots[knot].rank = rank;
-    s->knots[rank].order = knot;
-    s->knots[knot].first = first;
-    for (e = s->knots[knot].links; e >= 0; e = s->links[e].next) {
+    int i, j, e, paid = s->nodes[node].rod >= 0;
+    s->nodes[node].rank = rank;
+    s->nodes[rank].order = node;
+    s->nodes[node].first = first;
+    for (e = s->nodes[node].links; e >= 0; e = s->links[e].next) {
         const int to = s->links[e].to;
-        if (s->knots[to].rank >= 0) continue;
+        if (s->nodes[to].rank >= 0) continue;
         if (!DEMI_GROW(w, s->rows, (size_t)s->row_count + 1)) return 0;
         s->rows[s->row_count++] = to;
-        if (paid || s->knots[to].rod < 0 || s->knots[to].paid ||
-            (s->rods[s->knots[to].rod].ends[0] != knot &&
-             s->rods[s->knots[to].rod].ends[1] != knot)) continue;
-        s->knots[to].paid = paid = 1;
+        if (paid || s->nodes[to].rod < 0 || s->nodes[to].paid ||
+            (s->rods[s->nodes[to].rod].ends[0] != node &&
+             s->rods[s->nodes[to].rod].ends[1] != node)) continue;
+        s->nodes[to].paid = paid = 1;
     }
-    s->knots[knot].count = s->row_count - first;
+    s->nodes[node].count = s->row_count - first;
     for (i = first; i < s->row_count; i++) {
         const int a = s->rows[i];
-        for (e = s->knots[a].links; e >= 0; e = s->links[e].next)
-            s->knots[s->links[e].to].mark = a;
-        s->knots[a].degree--;
+        for (e = s->nodes[a].links; e >= 0; e = s->links[e].next)
+            s->nodes[s->links[e].to].mark = a;
+        s->nodes[a].degree--;
         for (j = first; j < s->row_count; j++) {
             const int b = s->rows[j];
-            if (b == a || s->knots[b].mark == a) continue;
-            if (!demi_knot_link(w, &s->knots[a].links, b)) return 0;
-            s->knots[a].degree++;
+            if (b == a || s->nodes[b].mark == a) continue;
+            if (!demi_node_link(w, &s->nodes[a].links, b)) return 0;
+            s->nodes[a].degree++;
         }
-        if (demi_knot_ready(s, s->knots + a) &&
-            !demi_knot_link(w, &s->knots[s->knots[a].degree].waiting, a)) return 0;
+        if (demi_node_ready(s, s->nodes + a) &&
+            !demi_node_link(w, &s->nodes[s->nodes[a].degree].waiting, a)) return 0;
     }
     return 1;
 }
 /* Minimum-degree ordering: eliminates the node with the fewest neighbours first. A tree is
    eliminated from its leaves to its root without fill-in; loops cause little. Returns 0 if memory
    ran out. */
-static int demi_knots_order(dem_world *w) {
+static int demi_nodes_order(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, rank = 0, d;
-    for (i = s->knot_count - 1; i >= 0; i--)
-        if (s->knots[i].rod < 0 &&
-            !demi_knot_link(w, &s->knots[s->knots[i].degree].waiting, i)) return 0;
-    for (d = 0; d < s->knot_count; ) {
-        demi_knot *k = s->knots + d;
+    for (i = s->node_count - 1; i >= 0; i--)
+        if (s->nodes[i].rod < 0 &&
+            !demi_node_link(w, &s->nodes[s->nodes[i].degree].waiting, i)) return 0;
+    for (d = 0; d < s->node_count; ) {
+        demi_joint_node *k = s->nodes + d;
         const int e = k->waiting;
         if (e < 0) { d++; continue; }
         k->waiting = s->links[e].next;
         i = s->links[e].to;
-        if (s->knots[i].rank >= 0 || s->knots[i].degree != d) continue;
-        if (!demi_knot_eliminate(w, i, rank++)) return 0;
+        if (s->nodes[i].rank >= 0 || s->nodes[i].degree != d) continue;
+        if (!demi_node_eliminate(w, i, rank++)) return 0;
         d = 0;
     }
     return 1;
@@ -113,11 +113,11 @@ static int demi_joints_room(dem_world *w) {
             n++;
         }
     w->joint_count = n;
-    s->knot_count = s->link_count = s->row_count = 0;
+    s->node_count = s->link_count = s->row_count = 0;
     if (!n) return 1;
     if (!DEMI_GROW(w, s->rods, (size_t)n) || !DEMI_GROW(w, s->joined, bodies) ||
-        !DEMI_GROW(w, s->knot_of, bodies) || !DEMI_GROW(w, s->knots, 3*(size_t)n)) return 0;
-    for (i = 0; i < w->bodies.count; i++) s->joined[i] = s->knot_of[i] = -1;
+        !DEMI_GROW(w, s->node_of, bodies) || !DEMI_GROW(w, s->nodes, 3*(size_t)n)) return 0;
+    for (i = 0; i < w->bodies.count; i++) s->joined[i] = s->node_of[i] = -1;
     for (i = 0; i < n; i++) {
         const dem_joint_desc *d = &w->joints[i].desc;
         demi_rod *r = s->rods + i;
@@ -132,30 +132,30 @@ static int demi_joints_room(dem_world *w) {
             r->next[e] = s->joined[body[e]];
             s->joined[body[e]] = i;
             if (!(w->bodies.inv_mass[body[e]] > 0)) continue;
-            if (s->knot_of[body[e]] < 0) s->knot_of[body[e]] = demi_knot_add(s, body[e], -1);
-            r->ends[e] = s->knot_of[body[e]];
+            if (s->node_of[body[e]] < 0) s->node_of[body[e]] = demi_node_add(s, body[e], -1);
+            r->ends[e] = s->node_of[body[e]];
             r->rows = demi_joint_rows(d->kind) + (d->motor == DEM_MOTOR_SPEED);
         }
         if (!r->rows) continue;
-        r->knot = demi_knot_add(s, -1, i);
+        r->node = demi_node_add(s, -1, i);
         for (e = 0; e < 2; e++) {
             const int end = r->ends[e];
             if (end < 0) continue;
-            s->knots[demi_knot_group(s, r->knot)].group = demi_knot_group(s, end);
-            if (!demi_knot_link(w, &s->knots[end].links, r->knot) ||
-                !demi_knot_link(w, &s->knots[r->knot].links, end)) return 0;
-            s->knots[end].degree++;
-            s->knots[r->knot].degree++;
+            s->nodes[demi_node_group(s, r->node)].group = demi_node_group(s, end);
+            if (!demi_node_link(w, &s->nodes[end].links, r->node) ||
+                !demi_node_link(w, &s->nodes[r->node].links, end)) return 0;
+            s->nodes[end].degree++;
+            s->nodes[r->node].degree++;
         }
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *group = s->knots + demi_knot_group(s, i);
-        const demi_rod *r = s->rods + s->knots[i].rod;
-        group->excess += s->knots[i].rod < 0 ? -1 : 1;
-        group->grounded |= s->knots[i].rod >= 0 && (r->ends[0] < 0 || r->ends[1] < 0);
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *group = s->nodes + demi_node_group(s, i);
+        const demi_rod *r = s->rods + s->nodes[i].rod;
+        group->excess += s->nodes[i].rod < 0 ? -1 : 1;
+        group->grounded |= s->nodes[i].rod >= 0 && (r->ends[0] < 0 || r->ends[1] < 0);
     }
-    return demi_knots_order(w) &&
-        DEMI_GROW(w, s->blocks, 36*((size_t)s->knot_count + (size_t)s->row_count));
+    return demi_nodes_order(w) &&
+        DEMI_GROW(w, s->blocks, 36*((size_t)s->node_count + (size_t)s->row_count));
 }
 
 /* --- the system of one step --- */
@@ -164,7 +164,7 @@ static int demi_joints_room(dem_world *w) {
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
 /* Returns the time, s, between the contact detections of this step and the next. A body that has
    made no step since it was set is at the beginning of the step in the first, not in the middle. */
-static dem_real demi_knot_ahead(const dem_world *w, int body) {
+static dem_real demi_node_ahead(const dem_world *w, int body) {
     return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
 }
 /* Returns the velocity, m/s, of point `at` in the frame of a wall that has this pose. */
@@ -186,10 +186,10 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + joint;
     const int body = end ? r->b : r->a;
-    const dem_real by = ahead ? demi_knot_ahead(w, body) : 0;
+    const dem_real by = ahead ? demi_node_ahead(w, body) : 0;
     demi_rod_end o;
     if (body < w->bodies.count) {
-        const dem_quat q = ahead && r->ends[end] >= 0 ? s->knots[r->ends[end]].turned
+        const dem_quat q = ahead && r->ends[end] >= 0 ? s->nodes[r->ends[end]].turned
             : demi_quat_at(w->bodies.orient + 4*body);
         o.arm = dem_quat_rotate(q, j->arm[end]);
         o.axis = dem_quat_rotate(q, j->axis[end]);
@@ -262,7 +262,7 @@ static void demi_rod_jacobian(const dem_world *w, const demi_rod *r, int end, in
     }
 }
 /* Computes the 6 x 6 matrix of mass, kg, and inertia, kg m2, of a body; 1 if it cannot rotate. */
-static void demi_knot_mass(const dem_world *w, int body, double *m) {
+static void demi_node_mass(const dem_world *w, int body, double *m) {
     const double inv = (double)w->bodies.inv_inertia[body];
     int i, k;
     memset(m, 0, 36*sizeof *m);
@@ -329,43 +329,43 @@ static void demi_block_times(double *y, const double *a, const double *x, int tr
         for (k = 0; k < 6; k++) y[i] -= a[transposed ? 6*k + i : 6*i + k]*x[k];
 }
 /* Returns the block of two linked nodes: column of the one eliminated first, rows of the other. */
-static double *demi_knots_block(const demi_solver *s, int a, int b) {
-    const int early = s->knots[a].rank < s->knots[b].rank ? a : b, late = early == a ? b : a;
-    int e = s->knots[early].first;
+static double *demi_nodes_block(const demi_solver *s, int a, int b) {
+    const int early = s->nodes[a].rank < s->nodes[b].rank ? a : b, late = early == a ? b : a;
+    int e = s->nodes[early].first;
     while (s->rows[e] != late) e++;
-    return s->blocks + 36*((size_t)s->knot_count + (size_t)e);
+    return s->blocks + 36*((size_t)s->node_count + (size_t)e);
 }
 /* Assembles [M -J'; -J -give] and factors it: M of bodies, J rows of joints, give their softness.
    Rows that are not in force are -1 on the diagonal. */
-static void demi_knots_factor(dem_world *w) {
+static void demi_nodes_factor(dem_world *w) {
     demi_solver *s = &w->solver;
     double row[6];
     int i, k, e, l, rank;
-    memset(s->blocks, 0, 36*((size_t)s->knot_count + (size_t)s->row_count)*sizeof *s->blocks);
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_rod *r = s->rods + s->knots[i].rod;
-        if (s->knots[i].rod < 0) demi_knot_mass(w, s->knots[i].mover, s->blocks + 36*(size_t)i);
-        for (k = 0; k < 6 && s->knots[i].rod >= 0; k++) {
+    memset(s->blocks, 0, 36*((size_t)s->node_count + (size_t)s->row_count)*sizeof *s->blocks);
+    for (i = 0; i < s->node_count; i++) {
+        const demi_rod *r = s->rods + s->nodes[i].rod;
+        if (s->nodes[i].rod < 0) demi_node_mass(w, s->nodes[i].mover, s->blocks + 36*(size_t)i);
+        for (k = 0; k < 6 && s->nodes[i].rod >= 0; k++) {
             const int on = demi_rod_row(w, r, k);
             s->blocks[36*(size_t)i + 7*(size_t)k] = on ? -(double)r->give[k] : -1;
             for (e = 0; e < 2; e++) {
                 const int body = r->ends[e];
                 double *block;
                 if (!on || body < 0) continue;
-                block = demi_knots_block(s, i, body);
+                block = demi_nodes_block(s, i, body);
                 demi_rod_jacobian(w, r, e, k, row);
                 for (l = 0; l < 6; l++)
-                    block[s->knots[body].rank < s->knots[i].rank ? 6*k + l : 6*l + k] -= row[l];
+                    block[s->nodes[body].rank < s->nodes[i].rank ? 6*k + l : 6*l + k] -= row[l];
             }
         }
     }
-    for (rank = 0; rank < s->knot_count; rank++) {
-        const int v = s->knots[rank].order, first = s->knots[v].first;
-        const int end = first + s->knots[v].count;
-        const double *columns = s->blocks + 36*(size_t)s->knot_count;
+    for (rank = 0; rank < s->node_count; rank++) {
+        const int v = s->nodes[rank].order, first = s->nodes[v].first;
+        const int end = first + s->nodes[v].count;
+        const double *columns = s->blocks + 36*(size_t)s->node_count;
         double *pivot = s->blocks + 36*(size_t)v;
-        if (s->knots[v].rod < 0) demi_block_invert(pivot, 1, 0);
-        else demi_block_invert(pivot, -1, s->rods[s->knots[v].rod].give);
+        if (s->nodes[v].rod < 0) demi_block_invert(pivot, 1, 0);
+        else demi_block_invert(pivot, -1, s->rods[s->nodes[v].rod].give);
         for (k = first; k < end; k++) {
             const int a = s->rows[k];
             double by[36];
@@ -374,29 +374,29 @@ static void demi_knots_factor(dem_world *w) {
             for (l = 0; l < 36; l++) by[l] = -by[l];
             demi_block_less(s->blocks + 36*(size_t)a, by, columns + 36*(size_t)k);
             for (l = first; l < end; l++)
-                if (s->knots[s->rows[l]].rank < s->knots[a].rank)
-                    demi_block_less(demi_knots_block(s, a, s->rows[l]), by, columns + 36*(size_t)l);
+                if (s->nodes[s->rows[l]].rank < s->nodes[a].rank)
+                    demi_block_less(demi_nodes_block(s, a, s->rows[l]), by, columns + 36*(size_t)l);
         }
     }
 }
 /* Solves the system: x of all nodes is the right-hand side before, and the solution after. */
-static void demi_knots_solve(demi_solver *s) {
-    const double *columns = s->blocks + 36*(size_t)s->knot_count;
+static void demi_nodes_solve(demi_solver *s) {
+    const double *columns = s->blocks + 36*(size_t)s->node_count;
     int rank, e;
-    for (rank = 0; rank < s->knot_count; rank++) {
-        const demi_knot *k = s->knots + s->knots[rank].order;
+    for (rank = 0; rank < s->node_count; rank++) {
+        const demi_joint_node *k = s->nodes + s->nodes[rank].order;
         double y[6] = {0, 0, 0, 0, 0, 0};
-        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);       /* - D^-1 x */
+        demi_block_times(y, s->blocks + 36*(k - s->nodes), k->x, 0);       /* - D^-1 x */
         for (e = 0; e < 6; e++) y[e] = -y[e];
         for (e = k->first; e < k->first + k->count; e++)
-            demi_block_times(s->knots[s->rows[e]].x, columns + 36*(size_t)e, y, 0);
+            demi_block_times(s->nodes[s->rows[e]].x, columns + 36*(size_t)e, y, 0);
     }
     while (rank-- > 0) {
-        demi_knot *k = s->knots + s->knots[rank].order;
+        demi_joint_node *k = s->nodes + s->nodes[rank].order;
         double y[6] = {0, 0, 0, 0, 0, 0};
         for (e = k->first; e < k->first + k->count; e++)
-            demi_block_times(k->x, columns + 36*(size_t)e, s->knots[s->rows[e]].x, 1);
-        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);
+            demi_block_times(k->x, columns + 36*(size_t)e, s->nodes[s->rows[e]].x, 1);
+        demi_block_times(y, s->blocks + 36*(k - s->nodes), k->x, 0);
         for (e = 0; e < 6; e++) k->x[e] = -y[e];
     }
 }
@@ -410,7 +410,7 @@ static void demi_rod_lay(dem_world *w, int i) {
     const demi_rod_end x = demi_rod_end_of(w, i, 0, 0), y = demi_rod_end_of(w, i, 1, 0);
     const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
     const int b = r->b < w->bodies.count;
-    const demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+    const demi_joint_node *group = s->nodes + (r->rows ? demi_node_group(s, r->node) : 0);
     const dem_real give = group->excess + !group->grounded > 0 ? DEMI_GIVE_LOOPS : DEMI_GIVE;
     int k, e;
     /* both arms end in the middle of the gap, which conserves angular momentum */
@@ -498,25 +498,25 @@ static void demi_joints_lay(dem_world *w) {
         }
         if (w->stage.forces_valid) j->state.turned += (double)(s->dt*r->before[5]);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        const int body = s->knots[i].mover;
-        demi_knot *group = s->knots + demi_knot_group(s, i);
+    for (i = 0; i < s->node_count; i++) {
+        const int body = s->nodes[i].mover;
+        demi_joint_node *group = s->nodes + demi_node_group(s, i);
         if (body < 0) {
-            demi_joint *j = w->joints + s->knots[i].rod;
-            const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
+            demi_joint *j = w->joints + s->nodes[i].rod;
+            const dem_real size = demi_rod_size(w, s->rods + s->nodes[i].rod), few = size/10;
             const dem_real gap = j->state.gap + j->state.tilt*size;
             group->bank += j->bank;
             group->wide = DEMI_MAX(group->wide, (double)gap);
-            group->closed = DEMI_MAX(group->closed, demi_rod_closed(w, s->rods + s->knots[i].rod));
+            group->closed = DEMI_MAX(group->closed, demi_rod_closed(w, s->rods + s->nodes[i].rod));
             j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
             group->open |= (j->apart > few)*2;
         } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
             demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
             (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
     }
-    for (i = 0; i < s->knot_count; i++) {
-        s->knots[i].guarded = s->knots[i].wide > s->knots[i].closed;
-        s->knots[i].open |= s->knots[i].guarded;
+    for (i = 0; i < s->node_count; i++) {
+        s->nodes[i].guarded = s->nodes[i].wide > s->nodes[i].closed;
+        s->nodes[i].open |= s->nodes[i].guarded;
     }
     s->factored = 0;
 }
@@ -530,16 +530,16 @@ static void demi_joints_warm(dem_world *w) {
     }
 }
 /* Predicts the orientations of joined bodies at the next detection, by the integrator's scheme. */
-static void demi_knots_ahead(dem_world *w) {
+static void demi_nodes_ahead(dem_world *w) {
     const demi_solver *s = &w->solver;
     int i;
-    for (i = 0; i < s->knot_count; i++) {
-        const int body = s->knots[i].mover;
+    for (i = 0; i < s->node_count; i++) {
+        const int body = s->nodes[i].mover;
         dem_quat q;
         dem_vec3 turn;
         dem_real dt;
         if (body < 0) continue;
-        dt = demi_knot_ahead(w, body);
+        dt = demi_node_ahead(w, body);
         q = demi_quat_at(w->bodies.orient + 4*body);
         turn = demi_at(s->movers[body].w);
         if (w->bodies.shaped && w->bodies.shape[body]) {
@@ -548,11 +548,11 @@ static void demi_knots_ahead(dem_world *w) {
             const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
             demi_rotation_rows[w->desc.rotation].fly(&q, L, I, inv, dt);
         } else q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(turn, dt)), q));
-        s->knots[i].turned = q;
+        s->nodes[i].turned = q;
     }
 }
 /* Returns the angular acceleration of a body that rotates with the spin without torque, rad/s2. */
-static dem_vec3 demi_knot_tumbles(const dem_world *w, int body, dem_vec3 spin) {
+static dem_vec3 demi_node_tumbles(const dem_world *w, int body, dem_vec3 spin) {
     const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
     const dem_vec3 I = demi_moments_of(w, body), x = dem_quat_unrotate(q, spin);
     const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
@@ -582,7 +582,7 @@ static void demi_rod_bends(const dem_world *w, int joint, dem_real *bend) {
             dem_vec3 spin = demi_at(w->solver.movers[body].w), tumbles = demi_v(0, 0, 0);
             if (body < w->bodies.count) {
                 if (!after) spin = demi_at(w->bodies.spin + 4*body);
-                tumbles = demi_knot_tumbles(w, body, spin);
+                tumbles = demi_node_tumbles(w, body, spin);
                 point = demi_add(point, demi_scale(demi_add(demi_cross(tumbles, r->arm[e]),
                     demi_cross(spin, demi_cross(spin, r->arm[e]))), half));
             } else point = demi_add(point, demi_scale(demi_rod_driven(w, joint), half));
@@ -609,9 +609,9 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
     memset(lacks, 0, 6*sizeof *lacks);
     if (!r->rows) return 0;
     demi_rod_velocity(s, r, u);
-    if (s->knots[s->knots[r->knot].group].guarded && !shifts) {
+    if (s->nodes[s->nodes[r->node].group].guarded && !shifts) {
         dem_real bend[6];
-        if (s->knots[s->knots[r->knot].group].guarded > 1)
+        if (s->nodes[s->nodes[r->node].group].guarded > 1)
             for (k = 0; k < 5; k++) lacks[k] = -r->before[k] - u[k];
         else {
             demi_rod_bends(w, i, bend);
@@ -622,7 +622,7 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
         const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
         const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
         const dem_vec3 tilt = demi_cross(y.axis, x.axis);       /* of a against b */
-        const dem_real dt = DEMI_MAX(demi_knot_ahead(w, r->a), demi_knot_ahead(w, r->b));
+        const dem_real dt = DEMI_MAX(demi_node_ahead(w, r->a), demi_node_ahead(w, r->b));
         const dem_real part = DEMI_MIN(1, size/(10*demi_length(off) + DEMI_TINY))/dt;
         const dem_real turn = DEMI_MIN(1, DEM_R(0.1)/(demi_length(tilt) + DEMI_TINY))/dt;
         demi_put(lacks, demi_scale(off, -part));
@@ -643,23 +643,23 @@ static dem_real demi_joints_solve(dem_world *w, int shifts) {
     demi_solver *s = &w->solver;
     dem_real worst = 0, left, lacks[6];
     int i, k;
-    if (!s->factored) demi_knots_factor(w);
+    if (!s->factored) demi_nodes_factor(w);
     s->factored = 1;
-    demi_knots_ahead(w);
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *knot = s->knots + i;
-        memset(knot->x, 0, sizeof knot->x);
-        if (knot->rod < 0) continue;
-        left = demi_rod_lacks(w, knot->rod, shifts, lacks);
+    demi_nodes_ahead(w);
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *node = s->nodes + i;
+        memset(node->x, 0, sizeof node->x);
+        if (node->rod < 0) continue;
+        left = demi_rod_lacks(w, node->rod, shifts, lacks);
         worst = DEMI_MAX(worst, left);
-        for (k = 0; k < 6; k++) knot->x[k] = -(double)lacks[k];
+        for (k = 0; k < 6; k++) node->x[k] = -(double)lacks[k];
     }
-    demi_knots_solve(s);
+    demi_nodes_solve(s);
     for (i = 0; i < w->joint_count && !shifts; i++) {
         demi_rod *r = s->rods + i;
         dem_real by[6];
         if (!r->rows) continue;
-        for (k = 0; k < 6; k++) r->given[k] += by[k] = (dem_real)s->knots[r->knot].x[k];
+        for (k = 0; k < 6; k++) r->given[k] += by[k] = (dem_real)s->nodes[r->node].x[k];
         demi_rod_apply(w, r, by, demi_rod_twist(r, by));
     }
     return worst;
@@ -696,9 +696,9 @@ static dem_real demi_joints_sweep(dem_world *w) {
     const dem_real enough = DEMI_JOINED*w->effects.radius_min/s->dt;
     dem_real worst, left, far2 = 0, digit;
     int rounds = 0, i;
-    if (!s->knot_count) return 0;
-    for (i = 0; i < s->knot_count; i++) {
-        const dem_real *x = w->bodies.pos + 4*DEMI_MAX(s->knots[i].mover, 0);
+    if (!s->node_count) return 0;
+    for (i = 0; i < s->node_count; i++) {
+        const dem_real *x = w->bodies.pos + 4*DEMI_MAX(s->nodes[i].mover, 0);
         far2 = DEMI_MAX(far2, demi_dot(demi_at(x), demi_at(x)));
     }
     digit = 8*(DEMI_SINGLE ? DEM_R(FLT_EPSILON) : DEM_R(DBL_EPSILON))/s->dt;
@@ -729,18 +729,18 @@ static double demi_rod_work(const dem_world *w, const demi_rod *r) {
 static int demi_joints_guard(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, n = 0;
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < s->node_count; i++) s->nodes[i].work = 0;
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        if (r->rows) s->knots[demi_knot_group(s, r->knot)].work += demi_rod_work(w, r);
+        if (r->rows) s->nodes[demi_node_group(s, r->node)].work += demi_rod_work(w, r);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *k = s->knots + i;
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *k = s->nodes + i;
         if (k->group != i || k->guarded > 1 || !(k->work > DEMI_MAX(k->bank, 0))) continue;
         k->guarded++;
         n++;
     }
-    for (i = 0; i < s->knot_count && n; i++) s->knots[i].group = demi_knot_group(s, i);
+    for (i = 0; i < s->node_count && n; i++) s->nodes[i].group = demi_node_group(s, i);
     return n;
 }
 /* Closes the gaps of guarded groups by displacements, as far as the energy that they may spend
@@ -752,18 +752,18 @@ static double demi_joints_shift(dem_world *w) {
     demi_solver *s = &w->solver;
     double farthest = 0;
     int i, any = 0;
-    for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
+    for (i = 0; i < s->node_count; i++) any |= s->nodes[i].guarded && s->nodes[i].open;
     if (!any) return 0;
     demi_joints_solve(w, 1);
-    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_knot *k = s->knots + i;
+    for (i = 0; i < s->node_count; i++) s->nodes[i].work = 0;
+    for (i = 0; i < s->node_count; i++) {
+        const demi_joint_node *k = s->nodes + i;
         const demi_d3 g = demi_d3_of(w->desc.gravity), x = demi_d3_at(k->x);
         const double fall = demi_d3_dot(g, x) + digit*demi_d3_length(g)*demi_d3_length(x);
-        if (k->mover >= 0) s->knots[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
+        if (k->mover >= 0) s->nodes[k->group].work -= fall*(double)(w->bodies.mass[k->mover]*s->dt);
     }
-    for (i = 0; i < s->knot_count; i++) {
-        const demi_knot *k = s->knots + i, *group = s->knots + k->group;
+    for (i = 0; i < s->node_count; i++) {
+        const demi_joint_node *k = s->nodes + i, *group = s->nodes + k->group;
         const double paid = group->open > 1 || !(group->work > group->spare) ? 1
             : group->spare/group->work;
         const dem_real by = (dem_real)paid*s->dt;
@@ -793,13 +793,13 @@ static double demi_joints_shift(dem_world *w) {
 static void demi_joints_bank(dem_world *w) {
     demi_solver *s = &w->solver;
     int i, k;
-    for (i = 0; i < s->knot_count; i++) {
-        s->knots[i].spare = s->knots[i].bank;
-        s->knots[i].bank = s->knots[i].work = 0;
+    for (i = 0; i < s->node_count; i++) {
+        s->nodes[i].spare = s->nodes[i].bank;
+        s->nodes[i].bank = s->nodes[i].work = 0;
     }
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+        demi_joint_node *group = s->nodes + (r->rows ? demi_node_group(s, r->node) : 0);
         dem_real u[6];
         w->joints[i].bank -= w->joints[i].held;
         if (!r->rows) continue;
@@ -809,13 +809,13 @@ static void demi_joints_bank(dem_world *w) {
     }
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        const demi_knot *group = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
+        const demi_joint_node *group = r->rows ? s->nodes + demi_node_group(s, r->node) : 0;
         if (!group) w->joints[i].bank = 0;
         else if (group->bank > DEMI_BANKED*group->kinetic)
             w->joints[i].bank *= DEMI_BANKED*group->kinetic/group->bank;
     }
-    for (i = 0; i < s->knot_count; i++) {
-        demi_knot *group = s->knots + i;
+    for (i = 0; i < s->node_count; i++) {
+        demi_joint_node *group = s->nodes + i;
         const double most = DEMI_BANKED*group->kinetic;
         group->bank = DEMI_MIN(group->bank, most);
         group->spare = DEMI_MAX(0, DEMI_MIN(group->spare, group->bank) -
@@ -834,7 +834,7 @@ static void demi_joints_tell(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
     int i, k;
-    demi_knots_ahead(w);
+    demi_nodes_ahead(w);
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
         demi_joint *j = &w->joints[i];

@@ -6,7 +6,9 @@
    (the natural map in the metric of its inverse effective mass).
      Gauss-Seidel   contact after contact, each solved exactly in its own metric [JEA99]; for the
                     convex cone [TAS10] with the projection in that metric (again a cone, with
-                    mu sqrt(gt/gn)).
+                    mu sqrt(gt/gn)). Between two sweeps the impulses also go on along a conjugate
+                    direction [SIL10], as in the method of Fletcher and Reeves, with the change of
+                    a sweep as the negative gradient; the next sweep projects onto the cones again.
      Jacobi         all contacts at once; each takes a part of its step that is smaller the more
                     contacts its bodies have [TON12]. For comparison: it needs six to twelve times
                     as many sweeps.
@@ -131,7 +133,7 @@ static void demi_colours_all(dem_world *w, demi_task task) {
         const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
         s->first = s->begins[k];
         s->last = s->begins[k + 1];
-        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->crew.now, runs, 0, task);
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->threads.now, runs, 0, task);
         s->run += runs;
     }
 }
@@ -141,7 +143,7 @@ static void demi_runs_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
     s->first = s->run = 0;
     s->last = s->count;
-    demi_parallel(w, w->crew.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
+    demi_parallel(w, w->threads.now, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, 0, task);
     s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
 }
 /* Returns the sums over all runs of the last sweep. They are added in the order of runs, so the
@@ -172,6 +174,16 @@ static void demi_impulses_warm(dem_world *w, int index) {
     }
 }
 
+/* Columns of s->vectors, one vector per contact: BY: change of the impulse. Gauss-Seidel: WAY: the
+   direction in which impulses go on. Gradients: X, UX: impulse and relative velocity of the last
+   iterate; Y, UY: of the point where the gradient is taken. BROUGHT: relative velocity that BY
+   causes. BEGAN: impulse at the start. GIVEN: its x is the given bias. */
+enum { DEMI_BY, DEMI_WAY, DEMI_X = DEMI_WAY, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN,
+       DEMI_GIVEN };
+DEM_INLINE dem_vec3 *demi_vector_at(const demi_solver *s, int column, int i) {
+    return s->vectors + (size_t)column*(size_t)s->count + i;
+}
+
 /* --- Gauss-Seidel --- */
 
 /* Bodies are prefetched this many contacts ahead, which saves a tenth of the time. */
@@ -193,6 +205,9 @@ enum { DEMI_SOON = 8 };
             demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, SHAPED), \
                                                      &push, &slip, CONVEX)); \
             by = demi_add(demi_scale(c->normal, push - c->push), demi_sub(slip, c->slip)); \
+            sums.first += (push - c->push)*(push - c->push)*(c->gn - c->gt) + \
+                demi_dot(by, by)*c->gt; \
+            *demi_vector_at(s, DEMI_BY, i) = by; \
             c->push = push; \
             c->slip = slip; \
             demi_impulse_apply(s, c, by, SHAPED); \
@@ -221,22 +236,47 @@ static int demi_solved_open(const dem_world *w, const demi_solved *o) {
     if (w->desc.tolerance > 0) return o->worst > (double)w->desc.tolerance;
     return o->rms > enough || o->worst > 30*enough;
 }
+/* Adds s->step times the last direction to the impulses of a run. This plus the change of the last
+   sweep is the next direction. */
+static void demi_seidel_on(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        dem_vec3 *way = demi_vector_at(s, DEMI_WAY, i);
+        const dem_vec3 by = demi_scale(*way, s->step);
+        const dem_real push = demi_dot(by, c->normal);
+        *way = demi_add(by, *demi_vector_at(s, DEMI_BY, i));
+        c->push += push;
+        c->slip = demi_add(c->slip, demi_sub(by, demi_scale(c->normal, push)));
+        demi_impulse_apply(s, c, by, shaped);
+    }
+}
 /* Solves contacts and joints by Gauss-Seidel, in at most `most` sweeps; more if the energy guard of
    joints requires them. */
 static demi_solved demi_solve_seidel(dem_world *w, int most) {
     const demi_task kinds[4] = {demi_seidel_spheres, demi_seidel_spheres_convex,
                                 demi_seidel_shapes, demi_seidel_shapes_convex};
     const demi_task task = kinds[(w->desc.cone == DEM_CONE_CONVEX) + 2*(w->bodies.shaped > 0)];
+    demi_solver *s = &w->solver;
     demi_solved o = {0, 0, 0};
+    dem_real last = 0;                          /* squared size of the change of the last sweep */
+    int open;
+    if (s->count) memset(demi_vector_at(s, DEMI_WAY, 0), 0, (size_t)s->count*sizeof *s->vectors);
     do {
         demi_run_sums sums;
         dem_real joints;
         demi_colours_all(w, task);
-        sums = demi_runs_sum(&w->solver);
+        sums = demi_runs_sum(s);
         joints = demi_joints_sweep(w);          /* once: a macro would evaluate it twice */
         sums.worst = DEMI_MAX(sums.worst, joints);
-        demi_solved_tell(&w->solver, &o, sums);
-    } while ((++o.sweeps < most && demi_solved_open(w, &o)) || demi_joints_guard(w));
+        demi_solved_tell(s, &o, sums);
+        open = ++o.sweeps < most && demi_solved_open(w, &o);
+        s->step = sums.first < last ? sums.first/last : 0;      /* 0: begins again */
+        last = sums.first;
+        if (open) demi_colours_all(w, demi_seidel_on);
+    } while (open || demi_joints_guard(w));
     return o;
 }
 
@@ -315,13 +355,6 @@ static void demi_impulses_release(dem_world *w, int index) {
 
 /* --- gradients --- */
 
-/* Columns of s->vectors, one vector per contact: BY: change of the impulse. X, UX: impulse and
-   relative velocity of the last iterate; Y, UY: of the point where the gradient is taken. BROUGHT:
-   relative velocity that BY causes. BEGAN: impulse at the start. GIVEN: its x is the given bias. */
-enum { DEMI_BY, DEMI_X, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN, DEMI_GIVEN };
-DEM_INLINE dem_vec3 *demi_vector_at(const demi_solver *s, int column, int i) {
-    return s->vectors + (size_t)column*(size_t)s->count + i;
-}
 DEM_INLINE dem_vec3 demi_impulse_vector(const demi_impulse *c) {
     return demi_add(demi_scale(c->normal, c->push), c->slip);
 }
@@ -537,16 +570,17 @@ static demi_solved demi_solve_spectral(dem_world *w, int most) {
 }
 
 /* A solver. vectors: number of columns that it needs; moments: 1 if it supports rolling and
-   spinning friction; joints: 1 if it supports joints; most: largest number of sweeps. */
+   spinning friction; joints: 1 if it supports joints; parts: 1 if it takes parts of steps, so that
+   contacts that do not push may keep a remainder of an impulse; most: largest number of sweeps. */
 typedef struct demi_solver_row {
     const char *name;
-    int vectors, moments, joints;
+    int vectors, moments, joints, parts;
     demi_solved (*solve)(dem_world *w, int most);
 } demi_solver_row;
 static const demi_solver_row demi_solvers[] = {
-    {"Gauss-Seidel", 0, 1, 1, demi_solve_seidel},
-    {"Jacobi", 1, 0, 0, demi_solve_jacobi},
-    {"APGD", DEMI_GIVEN + 1, 0, 0, demi_solve_apgd},
-    {"spectral gradients", DEMI_GIVEN + 1, 0, 0, demi_solve_spectral}
+    {"Gauss-Seidel", DEMI_WAY + 1, 1, 1, 0, demi_solve_seidel},
+    {"Jacobi", 1, 0, 0, 1, demi_solve_jacobi},
+    {"APGD", DEMI_GIVEN + 1, 0, 0, 1, demi_solve_apgd},
+    {"spectral gradients", DEMI_GIVEN + 1, 0, 0, 1, demi_solve_spectral}
 };
 enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };

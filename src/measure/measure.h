@@ -69,7 +69,8 @@ static dem_result demi_contacts_settle(dem_world *w, const char *call) {
                            w->look.calling.who);
     was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
-    if (result == DEM_OK) result = demi_refresh(w);
+    if (result == DEM_OK)                       /* as a step does: inserted grains touch nothing */
+        result = s->forces_valid && !s->pairs_changed ? demi_all_rebuild(w) : demi_refresh(w);
     demi_called(w, was);
     return result;
 }

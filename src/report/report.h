@@ -242,8 +242,8 @@ static void demi_report(const dem_world *world, FILE *out) {
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
-    if (w->crew.best && w->crew.best < c.threads)
-        demi_words(few, sizeof few, " (%d in use: more were not faster)", w->crew.best);
+    if (w->threads.best && w->threads.best < c.threads)
+        demi_words(few, sizeof few, " (%d in use: more were not faster)", w->threads.best);
     demi_print(out, "dem.h %d.%d.%d, %s precision, %d thread%s%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR, DEM_VERSION_PATCH,
             DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", few, c.domains,

@@ -44,7 +44,7 @@ static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, 0, demi_some_ahead);
+    demi_parallel(w, w->threads.now, runs, 0, demi_some_ahead);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
@@ -60,6 +60,6 @@ static void demi_ahead(dem_world *w) {
 static void demi_ahead_back(dem_world *w) {
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->crew.now, runs, 0, demi_some_back);
+    demi_parallel(w, w->threads.now, runs, 0, demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }

@@ -278,7 +278,7 @@ static int demi_forces(dem_world *w) {
     w->kept_now = w->kept_next;
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
-    if (w->crew.now > 1) demi_domains_weigh(w);
+    if (w->threads.now > 1) demi_domains_weigh(w);
     for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
         const dem_vec3 axis = w->walls[i].motion.axis;
@@ -861,11 +861,11 @@ static dem_result demi_steps(dem_world *h, const char *call, int steps) {
     if (looks && result == DEM_OK) result = demi_look(h);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const demi_calling was = demi_calls(h, call, 1);
-        demi_crew_begin(h);
+        demi_threads_begin(h);
         if (!h->stage.moved) result = demi_step_ready(h);
         if (result == DEM_OK) {
             result = demi_step_once(h);
-            demi_crew_end(h);
+            demi_threads_end(h);
             DEMI_PHASE(h, result, ended)
         }
         demi_called(h, was);

@@ -103,8 +103,8 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     /* until there are bodies, by which demi_levels_choose decides */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
-    w->crew.now = w->desc.threads;              /* until the first step */
-    w->crew.fixed = DEMI_CREW_FIXED;
+    w->threads.now = w->desc.threads;              /* until the first step */
+    w->threads.fixed = DEMI_THREADS_FIXED;
     demi_bodies_begin(w);
     w->bodies.orienting = desc->orientations != 0;
     w->bodies.backward = demi_integrator_of(w)->backward;

@@ -17,11 +17,11 @@ enum { DEMI_FILL_TRIES = 2000, DEMI_FILL_OUTSIDE = 200000 };
 #define DEMI_PACK_MOST 3e8
 
 /* A node of the tree. */
-typedef struct demi_node {
+typedef struct demi_crowd_node {
     int32_t child;                 /* the first of its two halves; 0: a leaf */
     int32_t first, count;          /* of a leaf: its first sphere, linked by `next`; their number */
     dem_real largest;              /* m, largest radius in it */
-} demi_node;
+} demi_crowd_node;
 /* A sphere in the tree. body: index of its body; -1: not a body yet. next: -1: the last. */
 typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; } demi_sphere;
 /* An occupancy tree. Its spheres and nodes are w->crowd and w->crowd_nodes. */
@@ -62,7 +62,7 @@ static demi_nook demi_crowd_root(const demi_crowd *c) {
     return n;
 }
 /* Links sphere i into a leaf, as its first. */
-static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
+static void demi_leaf_put(demi_crowd_node *leaf, demi_sphere *all, int32_t i) {
     all[i].next = leaf->first;
     leaf->first = i;
     leaf->count++;
@@ -71,14 +71,14 @@ static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
 /* Splits a leaf into two halves. Returns 0 if memory runs out; the leaf is then unchanged. */
 static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
     demi_sphere *all = w->crowd;
-    demi_node *nodes;
+    demi_crowd_node *nodes;
     int32_t i, next;
     int k;
     if (!DEMI_GROW(w, w->crowd_nodes, (size_t)c->nodes + 2)) return 0;
     nodes = w->crowd_nodes;
     nodes[at->node].child = c->nodes;
     for (k = 0; k < 2; k++) {
-        demi_node *half = nodes + c->nodes++;
+        demi_crowd_node *half = nodes + c->nodes++;
         half->child = half->count = 0;
         half->first = -1;
         half->largest = 0;
@@ -95,7 +95,7 @@ static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
 static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radius, int body) {
     demi_nook at = demi_crowd_root(c);
     demi_sphere *s;
-    demi_node *node;
+    demi_crowd_node *node;
     int depth = 0;
     if (!DEMI_GROW(w, w->crowd, (size_t)c->count + 1)) return 0;
     s = w->crowd + c->count;
@@ -138,7 +138,7 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
     const demi_sphere *all = w->crowd;
-    const demi_node *nodes = w->crowd_nodes;
+    const demi_crowd_node *nodes = w->crowd_nodes;
     const dem_vec3 at = demi_place_of(&c->p, centre);
     demi_nook stack[DEMI_CROWD_DEPTH + 2];
     double x[3];
@@ -148,7 +148,7 @@ static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 cen
     stack[top++] = demi_crowd_root(c);
     while (top) {
         const demi_nook n = stack[--top];
-        const demi_node *node = nodes + n.node;
+        const demi_crowd_node *node = nodes + n.node;
         const double cut = (double)(radius + node->largest);
         if (demi_nook_far2(c, &n, x) >= cut*cut) continue;
         if (node->child) {                      /* visits the half that contains it first */
@@ -252,7 +252,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
                             int material, demi_periods p) {
     dem_vec3 mid;
     double half[3];
-    demi_node *root;
+    demi_crowd_node *root;
     int i, k;
     c->p = p;
     c->material = material;

@@ -478,10 +478,10 @@ static int demi_join_double(dem_world *w, demi_join *j) {
 /* --- facets in one plane that cover each other --- */
 
 /* A convex piece of a triangle. */
-enum { DEMI_SHARD = 12 };
-typedef struct demi_shard { int count; demi_d3 x[DEMI_SHARD]; } demi_shard;
+enum { DEMI_PIECE_CORNERS = 12 };
+typedef struct demi_facet_piece { int count; demi_d3 x[DEMI_PIECE_CORNERS]; } demi_facet_piece;
 /* The width of a piece, m: twice its area over the length of its outline. */
-static double demi_shard_width(const demi_shard *s) {
+static double demi_piece_width(const demi_facet_piece *s) {
     demi_d3 area = demi_d(0, 0, 0);
     double around = 0;
     int k;
@@ -492,25 +492,25 @@ static double demi_shard_width(const demi_shard *s) {
     }
     return around > 0 ? demi_d3_length(area)/around : 0;
 }
-static demi_shard demi_shard_of(const demi_join *j, int i) {
-    demi_shard s;
+static demi_facet_piece demi_piece_of(const demi_join *j, int i) {
+    demi_facet_piece s;
     for (s.count = 0; s.count < 3; s.count++)
         s.x[s.count] = demi_d3_at(j->x + 3*j->facet[5*i + s.count]);
     return s;
 }
-static demi_d3 demi_shard_normal(const demi_shard *t) {
+static demi_d3 demi_piece_normal(const demi_facet_piece *t) {
     return demi_d3_unit(demi_d3_normal(t->x[0], t->x[1], t->x[2]));
 }
 /* The directions into a triangle from its sides, unit. */
-static void demi_shard_inward(const demi_shard *t, demi_d3 *in) {
-    const demi_d3 n = demi_shard_normal(t);
+static void demi_piece_inward(const demi_facet_piece *t, demi_d3 *in) {
+    const demi_d3 n = demi_piece_normal(t);
     int k;
     for (k = 0; k < 3; k++)
         in[k] = demi_d3_unit(demi_d3_cross(n, demi_d3_sub(t->x[(k + 1)%3], t->x[k])));
 }
 /* True if a triangle of corners c (x 3) is beyond a side of triangle s, or touches it there. in: of
    s. */
-DEM_INLINE int demi_shard_beyond(const demi_shard *s, const demi_d3 *in, const double *c,
+DEM_INLINE int demi_piece_beyond(const demi_facet_piece *s, const demi_d3 *in, const double *c,
                                  double tiny) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -522,36 +522,36 @@ DEM_INLINE int demi_shard_beyond(const demi_shard *s, const demi_d3 *in, const d
     return 0;
 }
 /* Clips a piece to side k of triangle t; out: to what is beyond that side. */
-static void demi_shard_clip(demi_shard *s, const demi_shard *t, int k, int out) {
+static void demi_piece_clip(demi_facet_piece *s, const demi_facet_piece *t, int k, int out) {
     const demi_d3 e = demi_d3_sub(t->x[(k + 1)%3], t->x[k]);
-    const demi_d3 in = demi_d3_cross(demi_shard_normal(t), e);
+    const demi_d3 in = demi_d3_cross(demi_piece_normal(t), e);
     s->count = demi_polygon_clip(s->x, s->count, out ? demi_d3_scale(in, -1) : in, t->x[k]);
 }
 /* True if triangle t covers a part of triangle s wider than `tiny`, m, in the same plane. */
-static int demi_shard_covered(const demi_shard *s, const demi_shard *t, double tiny) {
-    const demi_d3 n = demi_shard_normal(t);
-    demi_shard common = *s;
+static int demi_piece_covered(const demi_facet_piece *s, const demi_facet_piece *t, double tiny) {
+    const demi_d3 n = demi_piece_normal(t);
+    demi_facet_piece common = *s;
     int k;
     for (k = 0; k < 3; k++)
         if (!(fabs(demi_d3_dot(n, demi_d3_sub(s->x[k], t->x[0]))) <= tiny)) return 0;
-    for (k = 0; k < 3; k++) demi_shard_clip(&common, t, k, 0);
-    return demi_shard_width(&common) > tiny;
+    for (k = 0; k < 3; k++) demi_piece_clip(&common, t, k, 0);
+    return demi_piece_width(&common) > tiny;
 }
 /* Removes from the pieces of a facet what triangle t covers. Returns 0 if memory ran out. */
-static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const demi_shard *t,
-                            double tiny) {
+static int demi_pieces_less(dem_world *w, demi_facet_piece **pieces, int *count,
+                            const demi_facet_piece *t, double tiny) {
     const int all = *count;
     int i, k, left = 0;
     if (!demi_grow(w, DEMI_LOOSE, pieces, sizeof **pieces, 4*(size_t)all)) return 0;
     memmove(*pieces + 3*all, *pieces, (size_t)all*sizeof **pieces);
     for (i = 0; i < all; i++) {
-        demi_shard rest = (*pieces)[3*all + i];
-        for (k = 0; k < 3 && rest.count < DEMI_SHARD; k++) {
-            demi_shard *out = &(*pieces)[left];
+        demi_facet_piece rest = (*pieces)[3*all + i];
+        for (k = 0; k < 3 && rest.count < DEMI_PIECE_CORNERS; k++) {
+            demi_facet_piece *out = &(*pieces)[left];
             *out = rest;
-            demi_shard_clip(out, t, k, 1);
-            left += demi_shard_width(out) > tiny;
-            demi_shard_clip(&rest, t, k, 0);
+            demi_piece_clip(out, t, k, 1);
+            left += demi_piece_width(out) > tiny;
+            demi_piece_clip(&rest, t, k, 0);
         }
         if (k < 3) (*pieces)[left++] = rest;    /* too many corners: covered twice, but no hole */
     }
@@ -559,7 +559,8 @@ static int demi_shards_less(dem_world *w, demi_shard **pieces, int *count, const
     return 1;
 }
 /* Adds the pieces of facet i as facets. Returns 0 if memory ran out. */
-static int demi_join_shards(dem_world *w, demi_join *j, int i, const demi_shard *piece, int count) {
+static int demi_join_pieces(dem_world *w, demi_join *j, int i, const demi_facet_piece *piece,
+                            int count) {
     int p, k, m;
     for (p = 0; p < count; p++, piece++) {
         const size_t points = (size_t)(j->points + piece->count);
@@ -612,7 +613,7 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     double *half = (double *)demi_alloc(w, (size_t)all*3, sizeof *half);
     double *corner = (double *)demi_alloc(w, (size_t)all*9, sizeof *corner);
     unsigned char *gone = (unsigned char *)demi_alloc(w, (size_t)all, 1);
-    demi_shard *pieces = 0;
+    demi_facet_piece *pieces = 0;
     demi_tree tree;
     int i, k, m, any = 0, ok = middle && half && corner && gone;
     memset(&tree, 0, sizeof tree);
@@ -631,35 +632,35 @@ static int demi_join_cover(dem_world *w, demi_join *j) {
     ok = ok && demi_tree_make(w, &tree, middle, all);
     for (i = 0; i < all && ok; i++) {
         const double *at = middle + 3*i, *size = half + 3*i;
-        const demi_shard own = demi_shard_of(j, i);
+        const demi_facet_piece own = demi_piece_of(j, i);
         const double tiny = j->near_by[j->facet[5*i]];
         demi_search_line line;
         demi_d3 in[3];
         int32_t other;
         int count = 0;
-        demi_shard_inward(&own, in);
+        demi_piece_inward(&own, in);
         demi_tree_line(&line, &tree, at, at, DEMI_MAX(size[0], DEMI_MAX(size[1], size[2])));
         while (ok && (other = demi_tree_next(&line)) >= 0) {
             const int32_t shell = j->facet[5*i + 4], its = j->facet[5*other + 4];
             const int closed = shell >= 0 && its >= 0 && shell != its;
-            demi_shard t;
+            demi_facet_piece t;
             if (other == i || (other > i && !closed)) continue;
             for (k = 0; k < 3; k++)
                 if (fabs(middle[3*other + k] - at[k]) > half[3*other + k] + size[k] + tiny) break;
-            if (k < 3 || demi_shard_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
-            t = demi_shard_of(j, other);
-            if (other > i && demi_d3_dot(demi_shard_normal(&t), demi_shard_normal(&own)) > 0)
+            if (k < 3 || demi_piece_beyond(&own, in, corner + 9*(size_t)other, tiny)) continue;
+            t = demi_piece_of(j, other);
+            if (other > i && demi_d3_dot(demi_piece_normal(&t), demi_piece_normal(&own)) > 0)
                 continue;
-            if (!demi_shard_covered(&own, &t, tiny)) continue;
+            if (!demi_piece_covered(&own, &t, tiny)) continue;
             if (!gone[i]) {
                 ok = demi_grow(w, DEMI_LOOSE, &pieces, sizeof *pieces, 1);
                 if (ok) pieces[0] = own;
                 count = 1;
                 any = gone[i] = 1;
             }
-            if (ok && count) ok = demi_shards_less(w, &pieces, &count, &t, tiny);
+            if (ok && count) ok = demi_pieces_less(w, &pieces, &count, &t, tiny);
         }
-        if (ok && gone[i]) ok = demi_join_shards(w, j, i, pieces, count);
+        if (ok && gone[i]) ok = demi_join_pieces(w, j, i, pieces, count);
     }
     if (ok && any) ok = demi_join_again(w, j, gone, all);
     demi_free(w, middle);

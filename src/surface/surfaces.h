@@ -349,7 +349,7 @@ static double demi_wall_pace(const dem_world *w, int i) {
 /* Makes the tessellation of a wall for bodies of one scale. They are in the order of walls, then of
    scales. Returns 0 if memory ran out. */
 static int demi_tessellation_make(dem_world *w, int wall, int scale) {
-    demi_form f;
+    demi_draft f;
     demi_wall *s;
     int ok;
     if (!DEMI_GROW(w, w->surfaces, (size_t)w->surface_count + 1)) return 0;
@@ -357,7 +357,7 @@ static int demi_tessellation_make(dem_world *w, int wall, int scale) {
          (s[-1].lead > wall || (s[-1].lead == wall && s[-1].scale > 1 + scale)); s--) s[0] = s[-1];
     demi_surface_begin(w, wall, s);
     s->scale = 1 + scale;
-    demi_form_begin(&f, w, &w->walls[wall], 5e-4*ldexp(1, scale - 41));
+    demi_draft_begin(&f, w, &w->walls[wall], 5e-4*ldexp(1, scale - 41));
     s->kind = f.per == 3 ? DEMI_WALL_MESH : DEMI_WALL_PROFILE;
     memcpy(s->step, f.step, sizeof s->step);
     s->vertex_count = f.points;
@@ -367,7 +367,7 @@ static int demi_tessellation_make(dem_world *w, int wall, int scale) {
     ok = !f.failed && s->vertices && s->corners;
     if (ok) memcpy(s->vertices, f.x, (size_t)f.points*3*sizeof(dem_real));
     if (ok) memcpy(s->corners, f.corner, (size_t)(f.facets*f.per)*sizeof(int32_t));
-    demi_form_free(&f);
+    demi_draft_free(&f);
     ok = ok && demi_surface_end(w, s) && demi_surface_weigh(w, s);
     s->open = w->walls[wall].open;
     return ok;
