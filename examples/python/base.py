@@ -786,7 +786,8 @@ def _array_of(value, kind, where, width=1, count=None, null=False):
 
 
 def _view(pointer, kind, shape, owner, const):
-    """The memory behind a pointer as a memoryview of this shape (of structs: as a C array); None for null."""
+    """The memory behind a pointer as a memoryview of this shape (of structs: as a C array); None for
+    null, and of numbers also if there are none."""
     if not pointer:
         return None
     count = 1
@@ -796,9 +797,11 @@ def _view(pointer, kind, shape, owner, const):
         array = _row(kind, count).from_address(ctypes.addressof(pointer.contents)) if count else _row(kind, 0)()
         array.owner, array._call = owner, owner._call
         return array
-    array = (kind*count).from_address(ctypes.addressof(pointer.contents)) if count else (kind*0)()
+    if not count:
+        return None
+    array = (kind*count).from_address(ctypes.addressof(pointer.contents))
     array.owner = owner                                     # the world lives as long as the view
-    view = memoryview(array).cast("B").cast(array._type_._type_, *([list(shape)] if count else []))
+    view = memoryview(array).cast("B").cast(array._type_._type_, list(shape))
     return Array(view.toreadonly() if const else view)
 
 
@@ -1888,6 +1891,9 @@ class Handle:
             pointer = getattr(struct, "_" + name) if isinstance(kind, View) else None
             if pointer:
                 view = getattr(struct, name)
+                if view is None:                            # no numbers
+                    setattr(copy, "_" + name, None)
+                    continue
                 array = (kind.kind*(view.nbytes//ctypes.sizeof(kind.kind))).from_buffer_copy(view.cast("B"))
                 copy._extra.append(array)
                 setattr(copy, "_" + name, ctypes.cast(array, kind.c))
@@ -2219,22 +2225,21 @@ class Rows:
         found = _lib.dem_bodies_get(at)
         count = found.count
         pointer = getattr(found, raw)
-        if not pointer:
+        if not pointer or not count:                        # memory of removed bodies may be left
             return None
         width = found.real_count if axis == "real_count" else axis
         array = (item*(count*(width or 1)))()
-        if count:
-            if "dempy_rows" in _lib.__dict__:
-                result = _lib.dempy_rows(at, offset, (width or 1)*ctypes.sizeof(item), count, ctypes.addressof(array))
-                if result:
-                    raise MemoryError("World.bodies.%s: out of memory" % name)
-            else:
-                rows = sorted(range(count), key=found.slots.__getitem__)
-                width = width or 1
-                for i, row in enumerate(rows):
-                    array[width*i:width*i + width] = pointer[width*row:width*row + width]
+        if "dempy_rows" in _lib.__dict__:
+            result = _lib.dempy_rows(at, offset, (width or 1)*ctypes.sizeof(item), count, ctypes.addressof(array))
+            if result:
+                raise MemoryError("World.bodies.%s: out of memory" % name)
+        else:
+            rows = sorted(range(count), key=found.slots.__getitem__)
+            width = width or 1
+            for i, row in enumerate(rows):
+                array[width*i:width*i + width] = pointer[width*row:width*row + width]
         view = memoryview(array).cast("B")
-        return Array(view.cast(item._type_, (count, width) if axis and count else (count,)).toreadonly())
+        return Array(view.cast(item._type_, (count, width) if axis else (count,)).toreadonly())
 
     def _all(self):
         """The ids of all bodies."""

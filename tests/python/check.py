@@ -1357,6 +1357,21 @@ def _():
     same((columns["x"], columns["mass"], columns["material"], columns["heat"], len(columns)), ([], [], [], [], 16))
 
 
+@test("a world whose bodies are all removed gives what a new world gives: None for each array")
+def _():
+    for more in ({}, {"body_reals": "age heat", "groups": "a b"}):
+        world, glass = heap(**more)
+        world.sphere(glass, 1e-3, (0, 0, 0.1)).remove()
+        for name in dem.Bodies.kinds:
+            if name not in ("count", "real_count"):
+                same(getattr(world.bodies, name), None, name)
+                if name != "groups":
+                    same(getattr(world.bodies_memory, name), None, name)
+        same(world.bodies.to_dict()["x"], [])
+        world.sphere(glass, 1e-3, (0, 0, 0.1))
+        same(world.bodies.positions.shape, (1, 4))
+
+
 @test("a friction or rolling law without the stiffness or load that it reads raises, or warns once, by name")
 def _():
     def run(name, **fields):
