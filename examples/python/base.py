@@ -1196,6 +1196,17 @@ class Struct(ctypes.Structure):
         except IndexError:
             raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
 
+    def __setitem__(self, index, value):
+        if not isinstance(index, str):
+            try:
+                index = list(self.kinds)[operator.index(index)]
+            except TypeError:
+                raise ArgumentTypeError("%s[...]: %s, the number or the name of a field is wanted" % (
+                    type(self).__name__, _given(index))) from None
+            except IndexError:
+                raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
+        setattr(self, index, value)
+
     def keys(self):
         """The names of the fields: dict(struct) and pandas use them."""
         return list(self.kinds)
@@ -1403,6 +1414,36 @@ class Numbers(Struct):
             return NotImplemented                           # an array of numpy answers itself
         return type(self)(*[function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
 
+    def _in_place(self, other, function, sign):
+        """v += w and the like, which change v itself: `force += ...` in a function of yours has an effect on its argument."""
+        name = type(self).__name__
+        if getattr(self._b_base_, "_assigns", None):        # of a property with a setter, which gets the sum
+            return self._with_each(other, function)
+        _changed(self, "%s %s ..." % (name, sign))
+        if hasattr(other, "__len__") and not isinstance(other, (Numbers, Row, tuple, list)):
+            try:
+                other = _items(other, "%d numbers" % len(self))     # an array of numpy would take the place of v
+            except TypeError as error:
+                raise _named(error, "%s %s ..." % (name, sign)) from None
+        made = self._with_each(other, function)
+        if made is NotImplemented:
+            raise ArgumentTypeError("%s %s ...: %s, a number or %d numbers are wanted" % (name, sign, _given(other), len(self)))
+        for i, value in enumerate(made):
+            self[i] = value
+        return self
+
+    def __iadd__(self, other):
+        return self._in_place(other, operator.add, "+=")
+
+    def __isub__(self, other):
+        return self._in_place(other, operator.sub, "-=")
+
+    def __imul__(self, other):
+        return self._in_place(other, operator.mul, "*=")
+
+    def __itruediv__(self, other):
+        return self._in_place(other, operator.truediv, "/=")
+
     def __add__(self, other):
         return self._with_each(other, operator.add)
 
@@ -1439,8 +1480,9 @@ class Numbers(Struct):
         return sum(a*b for a, b in zip(self, type(self)._made(other)))
 
 
-for _name in "add radd sub rsub mul rmul truediv rtruediv abs".split():
+for _name in "add radd sub rsub mul rmul truediv rtruediv abs iadd isub imul itruediv".split():
     setattr(Row, "__%s__" % _name, getattr(Numbers, "__%s__" % _name))
+Row._in_place = Numbers._in_place
 
 
 class Vector(Numbers):
@@ -2026,7 +2068,7 @@ class WorldBase(Handle):
     def gravity(self):
         """The acceleration of gravity, m/s2. An assignment calls gravity_set."""
         desc = self.desc
-        desc.__dict__["_call"] = "write world.gravity = (x, y, z)"
+        desc.__dict__.update(_call="write world.gravity = (x, y, z)", _assigns=True)
         return desc.gravity
 
     @gravity.setter

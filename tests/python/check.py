@@ -1372,6 +1372,71 @@ def _():
         same(world.bodies.positions.shape, (1, 4))
 
 
+@test("+=, -=, *=, /= and v[i] = x change a vector where it may be changed, also the force of a function, and raise elsewhere")
+def _():
+    v = dem.Vec3(1, 2, 3)
+    w = v
+    v += (1, 1, 1)
+    v -= dem.Vec3(0, 1, 0)
+    v *= 4
+    v /= (2, 4, 8)
+    v[0] += 1
+    v[-1] = 7
+    same((v is w, tuple(v)), (True, (5, 2, 7)))
+    raises(IndexError, lambda: v.__setitem__(3, 1), "Vec3[...]: 3")
+    raises(TypeError, lambda: v.__setitem__(1, "x"), "Vec3.y", "'x'")
+    raises(TypeError, lambda: v.__iadd__((1, 2)), "Vec3 += ...", "3 numbers are wanted")
+    raises(TypeError, lambda: v.__imul__("abc"), "Vec3 *= ...")
+    ramp = dem.Motion()
+    ramp.velocity += (0, 0, 1)
+    ramp.velocity[1] = 2
+    same(tuple(ramp.velocity), (0, 2, 1))
+
+    def first(body, id, time, force, torque):
+        force += (0, 0, 1e-6)
+        force[2] += 1e-6
+        torque -= (1e-9, 0, 0)
+        torque *= 2
+
+    def second(body, id, time, force, torque):
+        force.z, torque.x = 1e-6 + 1e-6, 2*(0 - 1e-9)
+    hashes = []
+    for function in (first, second):
+        world = dem.World(body_force=function)
+        ball = world.sphere(world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5), 1e-3, (0, 0, 0.1))
+        world.step(10)
+        assert ball.state.velocity.z > 0 and ball.state.spin.x < 0
+        hashes.append(world.hash)
+    same(hashes[0], hashes[1])
+    raises(dem.FieldError, lambda: ball.state.velocity.__iadd__((0, 0, 1)), "Vec3 += ...", "Body.set(")
+    raises(dem.FieldError, lambda: ball.state.velocity.__setitem__(0, 1), "Body.set(")
+
+    def wrong(body, id, time, force, torque):
+        body.velocity += (0, 0, 1)
+    world = dem.World(body_force=wrong)
+    world.sphere(world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5), 1e-3, (0, 0, 0.1))
+    raises(dem.FieldError, lambda: world.step(1), "Vec3 += ...", "may only read")
+    world = dem.World()
+    world.gravity += (0, 0, -1)
+    same(tuple(world.gravity), (0, 0, -1))
+
+    def law(contact, memory, force):
+        force.normal = 1.0
+        force.tangent[0] = 1
+        force.tangent += (0, 2, 0)
+        found.append(tuple(force.tangent))
+    found = []
+    world = dem.World(law=law, law_stiffness=1e3)
+    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5)
+    world.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+    world.sphere(glass, 1e-3, (0, 0, 0.99e-3))
+    world.step(1)
+    assert found and found[0][1] == 2, found
+    row = dem._row(dem.Real, 3)(1, 2, 3)
+    row += 1
+    same(list(row), [2, 3, 4])
+
+
 @test("a friction or rolling law without the stiffness or load that it reads raises, or warns once, by name")
 def _():
     def run(name, **fields):
