@@ -1747,6 +1747,9 @@ def _in_python(text):
     return head + colon + re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
 
 
+_thread = threading.get_ident
+
+
 class Handle:
     """A world, a replay or slabs: memory that the library owns."""
     _at = _context = None
@@ -1754,12 +1757,20 @@ class Handle:
     @property
     def _c(self):
         """The pointer, for a call."""
-        at = self._at
-        if at is None:
-            frame = sys._getframe(1)                        # of a method, perhaps of an id
-            raise ArgumentError("%s.%s: this %s is closed" % (type(frame.f_locals.get("self", self)).__name__, frame.f_code.co_name,
-                                                             type(self).__name__.lower()))
+        at, context = self._at, self._context
+        if at is None or context and context.runs is not None and context.runs != _thread():
+            self._refuse()
         return at
+
+    def _refuse(self):
+        """Raises if this is closed, or if another thread runs the world. A law may be called in any thread of the run."""
+        frame = sys._getframe(2)                            # of a method, perhaps of an id
+        own = frame.f_locals.get("self", self)
+        name = "%s.%s" % ("World.bodies" if isinstance(own, Rows) else type(own).__name__, frame.f_code.co_name)
+        if self._at is None:
+            raise ArgumentError("%s: this %s is closed" % (name, type(self).__name__.lower()))
+        if not self._called():
+            raise ArgumentError("%s: another thread runs this world; one thread at a time may use a world" % name)
 
     def __setattr__(self, name, value):
         found, kind = getattr(type(self), name, None), type(self).__name__
@@ -1801,9 +1812,6 @@ class Handle:
         """Calls a function that takes long. Ctrl-C meanwhile is noted: a progress function then ends the run, and the
         caller gets KeyboardInterrupt."""
         context, thread = self._context, threading.get_ident()
-        if context.runs and context.runs != thread:
-            raise ArgumentError("%s.%s: another thread runs this world; one thread at a time may use a world" % (
-                type(self).__name__, sys._getframe(1).f_code.co_name))
         outer, context.runs, context.stop = context.runs, thread, False
         before = _signal.getsignal(_signal.SIGINT) if thread == threading.main_thread().ident else None
         _RUNNING.add(context)
@@ -2016,6 +2024,13 @@ class WorldBase(Handle):
     def _at(self):
         return self._memory.at if self._memory else None
 
+    @property
+    def _c(self):                                   # that of Handle, faster
+        memory, runs = self._memory, self._context.runs
+        if memory is None or runs is not None and runs != _thread():
+            self._refuse()
+        return memory.at
+
     def _create(self, desc):
         self._context = _Context(self)
         desc._functions = dict(desc._functions or {})
@@ -2100,6 +2115,8 @@ class WorldBase(Handle):
     def __repr__(self):
         if self._at is None:
             return "<World, closed>"
+        if self._context.runs not in (None, _thread()) and not self._called():
+            return "<World, run by another thread>"
         shown = self.body_counts
         return "<World at %.6g s: %d bodies, step %d>" % (self.time, shown.present, self.steps)
 

@@ -851,12 +851,17 @@ def _():
     same(float(done.stdout) < 2, True, "s until all had ended: " + done.stdout)
 
 
-@test("one world in two threads is refused by name")
+@test("one world in two threads is refused by name, reads included; functions that the run calls may read")
 def _():
     world, glass = heap(threads=1)
     world.spheres_fill(glass, 0.01, (-0.3, -0.3, 0, 0.3, 0.3, 0.4), 300, 1)
+    body, seen = world.bodies[0], []
+
+    def progress(world, *_):
+        seen.append((world.time, body.state.position.z, len(world.bodies.positions), repr(world)))
+        return stop.is_set()
     stop = threading.Event()
-    thread = threading.Thread(target=lambda: swallow(lambda: world.run(1e4, lambda *_: stop.is_set())))
+    thread = threading.Thread(target=lambda: swallow(lambda: world.run(1e4, progress)))
     thread.start()
     try:
         began = time.time()
@@ -865,10 +870,28 @@ def _():
         raises(dem.Error, lambda: world.run(1), "World.run: another thread runs this world")
         raises(dem.Error, lambda: world.step(1), "another thread")
         raises(dem.Error, world.close, "another thread")
+        for name in ("time", "steps", "hash", "totals", "contacts", "bodies_memory", "desc", "dt", "gravity", "counters"):
+            raises(dem.ArgumentError, lambda: getattr(world, name), "World.", "another thread runs this world")
+        raises(dem.ArgumentError, lambda: body.state, "Body.state: another thread runs this world")
+        raises(dem.ArgumentError, lambda: world.bodies.positions, "another thread runs this world")
+        raises(dem.ArgumentError, lambda: len(world), "another thread runs this world")
+        raises(dem.ArgumentError, lambda: world.gravity_set((0, 0, -1)), "another thread runs this world")
+        same(repr(world), "<World, run by another thread>")
     finally:
         stop.set()
         thread.join()
+    same((len(seen) > 0, len(seen[0][3]) > 30), (True, True))
     world.run(1e-4)
+
+    def law(contact, memory, force):                        # in all threads of OpenMP
+        times.add(threaded.time)
+        force.normal = 1e4*contact.overlap
+    times = set()
+    threaded = dem.World(law=law, law_stiffness=1e4, threads=2)
+    glass = threaded.material(density=2500, young=1e7, poisson=0.25, restitution=0.5)
+    threaded.spheres(glass, [(i*1.9e-3, j*1.9e-3, 0) for i in range(12) for j in range(12)], radius=1e-3)
+    threaded.step(3)
+    same(len(times) >= 2, True)
 
 
 def swallow(function):
