@@ -240,6 +240,8 @@ class NoFieldError(ArgumentError, AttributeError):
     """There is no field or attribute of this name."""
 # ---- the shared library ------------------------------------------------------------------------
 
+if os.environ.get("DEM_REAL", "") not in ("", "float", "double"):
+    raise LoadError("dem.py: the environment variable DEM_REAL is %r, must be float or double" % os.environ["DEM_REAL"])
 Real = ctypes.c_float if os.environ.get("DEM_REAL") == "float" else ctypes.c_double
 _NAN = float("nan")
 _SOURCE = """
@@ -1364,7 +1366,7 @@ class Struct(ctypes.Structure):
         base = self
         while base is not None:
             if getattr(base, "_call", None):
-                _changed(self, "%s.%s" % (type(self).__name__, name))
+                _changed(self, "%s.%s" % (type(self).__name__, name), name)
             base = getattr(base, "_b_base_", None)
         if kind is ctypes.c_double and type(value) is float:
             _set(self, name, value)
@@ -1512,14 +1514,32 @@ def _read(kind):
                                          "__doc__": kind.__doc__})
 
 
-def _changed(base, what):
-    """Refuses to change a part of a struct that a call has returned, or that a function may only read."""
+def _field_at(struct, part):
+    """The name of the field of a struct that contains a part of it."""
+    at = ctypes.addressof(part) - ctypes.addressof(struct)
+    return next((name for (raw, _), name in zip(struct._fields_, struct.kinds) if 0 <= at - getattr(type(struct), raw).offset < getattr(
+        type(struct), raw).size), "")
+
+
+def _world_call(name):
+    """What changes a field of world.desc, as the end of an error message."""
+    if isinstance(getattr(World, name, None), property) and getattr(World, name).fset:
+        return "write world.%s = ..." % name
+    return "call world.%s_set(...)" % name if hasattr(World, name + "_set") else "write dem.World(%s=...) when you make the world" % name
+
+
+def _changed(base, what, field=None):
+    """Refuses to change a part of a struct that a call has returned, or that a function may only read. field: of the struct
+    itself."""
+    first = base
     while base is not None:
         call = getattr(base, "_call", None)
+        if callable(call):
+            call = call(field or _field_at(base, first))
         if call:
             raise FieldError("%s cannot be set; %s" % (what, call) if getattr(base, "plain", None) else
                              "%s: this is a copy, whose change would have no effect; %s" % (what, call))
-        base = getattr(base, "_b_base_", None)
+        base, field = getattr(base, "_b_base_", None), None
 
 
 def _raw(kind):
@@ -1893,10 +1913,14 @@ class _Context:
     def __init__(self, world):
         self.raised, self.kept, self.go_on, self.memory, self.vectors, self.reals = None, {}, None, 0, 0, 0
         self.world_of, self.runs, self.ids, self.stop = weakref.ref(world), None, None, False
+        self.spoils, self.spoilt, self.names = None, None, {}   # the function that raised; the same, and the step
 
-    def fail(self, error):
+    def fail(self, error, kind=None):
+        """Notes an exception of a function. kind: of one whose failure spoils the state, such as a law."""
         if self.raised is None:
             self.raised = error
+        if kind and not self.spoils:
+            self.spoils = self.names.get(kind, kind)
 
     def world(self, pointer):
         world = self.world_of()
@@ -2034,7 +2058,10 @@ class Handle:
         if kind is Error:                                   # a null id
             kind = (MemoryError if ": out of memory" in text else FileError if ": cannot write" in text or ": cannot read" in text
                     else ArgumentError)
-        runs = self._context.runs if self._context else None
+        runs, spoilt = (self._context.runs, self._context.spoilt) if self._context else (None, None)
+        if spoilt and kind is UnstableError:
+            head, _, rest = text.partition(": ")
+            text = "%s: your function (%s) raised at step %d of this world; read a checkpoint or build it again; %s" % (head, *spoilt, rest)
         if runs and runs != threading.get_ident() and "called from a function that" in text:
             text = "%s: another thread runs this world; one thread at a time may use a world" % text.partition(":")[0]
         raise kind(text)
@@ -2043,6 +2070,9 @@ class Handle:
         """Raises the exception of a function of yours, or that of a result other than OK."""
         if self._context and self._context.raised is not None:
             error, self._context.raised = self._context.raised, None
+            if self._context.spoils and not self._context.spoilt and isinstance(self, WorldBase) and self._at == self._memory.at:
+                self._context.spoilt = self._context.spoils, _lib.dem_world_steps_get(self._at)
+            self._context.spoils = None
             self._text()                                    # a consequence: read, so that no run quotes it later
             raise error
         if result:
@@ -2279,6 +2309,8 @@ class WorldBase(Handle):
             desc.threads = 1                        # Python runs one function at a time
         if "force" in functions:                    # ctypes has no functions that return a struct
             force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
+            if not whole:
+                self._context.names["body_force"] = "force"
 
             def both(body, id, time, sum, torque):
                 made = force(body.position, body.velocity, body.radius, body.mass, time)
@@ -2720,6 +2752,19 @@ class Page:
 
     def __init__(self, path, height=560):
         path = os.fsdecode(_text_of(path, "dem.Page: path"))
+        try:
+            height = _number(height, ctypes.c_int)
+        except (TypeError, OverflowError) as error:
+            raise _named(error, "dem.Page: height") from None
+        if height <= 0:
+            raise ArgumentError("dem.Page: height: %d is given, must be > 0" % height)
+        try:
+            with open(path, "rb") as file:
+                found = b'<script type="dem/head">' in file.read(2**20)     # behind the viewer
+        except OSError as error:
+            raise FileError("dem.Page: cannot read %s: %s" % (path, error.strerror)) from None
+        if not found:
+            raise FormatError("dem.Page: %s is not a replay of dem.h; world.replay(path) records one" % path)
         self.path, self.height = path, height
 
     def __repr__(self):
@@ -3281,7 +3326,7 @@ class Wall(Id):
         """
         pose = Pose()
         self.world._ok(_lib.dem_wall_pose_get(self.world._c, self, pose))
-        self.world._with(pose)
+        self.world._with(pose, 'call wall.motion_set(...), which moves the wall from there on')
         return pose
 
     def remove(self):
@@ -3752,7 +3797,7 @@ def _wrap_dem_law_fn(function, context, struct):
             if _refs(_force) > _ONE and _held(_force):
                 raise _kept('force')
         except BaseException as error:
-            context.fail(_beyond(error, 'law', memory=memory_type) if type(error) is IndexError else error)
+            context.fail(_beyond(error, 'law', memory=memory_type) if type(error) is IndexError else error, 'law')
             Real.from_address(force).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), LawFn.c)
 
@@ -3773,7 +3818,7 @@ def _wrap_dem_law_rows_fn(function, context, struct):
             if _refs(_rows) > _ONE and _held(_rows):
                 raise _kept('rows')
         except BaseException as error:
-            context.fail(error)
+            context.fail(error, 'law_rows')
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p)(call), LawRowsFn.c)
 
 
@@ -3797,7 +3842,7 @@ def _wrap_dem_law_rate_fn(function, context, struct):
             if _refs(_rates) > _ONE and _held(_rates):
                 raise _kept('rates')
         except BaseException as error:
-            context.fail(_beyond(error, 'law_rate', rates=rates_type) if type(error) is IndexError else error)
+            context.fail(_beyond(error, 'law_rate', rates=rates_type) if type(error) is IndexError else error, 'law_rate')
             Real.from_address(rates).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(call), LawRateFn.c)
 
@@ -3858,7 +3903,7 @@ def _wrap_dem_reals_fn(function, context, struct):
             if _refs(_body) > _ONE and _held(_body):
                 raise _kept('body')
         except BaseException as error:
-            context.fail(_beyond(error, 'reals', reals=reals_type, rates=rates_type) if type(error) is IndexError else error)
+            context.fail(_beyond(error, 'reals', reals=reals_type, rates=rates_type) if type(error) is IndexError else error, 'reals')
             Real.from_address(reals).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, Body, ctypes.c_double, Real, ctypes.c_void_p)(call), RealsFn.c)
 
@@ -3909,7 +3954,7 @@ def _wrap_dem_body_force_fn(function, context, struct):
             if _refs(_torque) > _ONE and _held(_torque):
                 raise _kept('torque')
         except BaseException as error:
-            context.fail(error)
+            context.fail(error, 'body_force')
             Real.from_address(force).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, Body, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), BodyForceFn.c)
 
@@ -4348,7 +4393,7 @@ def _wrap_dem_motion_fn(function, context, struct):
             if _refs(_pose) > _ONE and _held(_pose):
                 raise _kept('pose')
         except BaseException as error:
-            context.fail(error)
+            context.fail(error, 'motion')
             Real.from_address(pose).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p)(call), MotionFn.c)
 
@@ -5776,7 +5821,7 @@ class World(WorldBase):
         """
         found = _lib.dem_world_desc_get(self._c)
         self._ok(0)
-        return self._with(found)
+        return self._with(found, _world_call)
 
     def material(self, *, density=0, young=0, poisson=0, restitution=0, friction=0, friction_static=0,
             rolling_friction=0, stiffness=0, stiffness_ratio=0, stiffness_unloading=0, stiffness_adhesion=0):

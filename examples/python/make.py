@@ -492,8 +492,9 @@ class Writer:
         if result not in ("None", "ctypes.c_void_p"):
             self.write("            return result")
         self.write("        except BaseException as error:")
-        self.write("            context.fail(%s)" % ("_beyond(error, %r, %s) if type(error) is IndexError else error" % (about, ", ".join(
-            "%s=%s_type" % (a.name, a.name) for a in pointers)) if pointers else "error"))
+        self.write("            context.fail(" + ("_beyond(error, %r, %s) if type(error) is IndexError else error" % (about, ", ".join(
+            "%s=%s_type" % (a.name, a.name) for a in pointers)) if pointers else "error") + (
+            ", %r)" % about if f.name in SPOILING else ")"))
         if poison:
             self.write("            Real.from_address(%s).value = _NAN" % poison[0])
         if result in ("ctypes.c_double", "Real"):
@@ -828,6 +829,8 @@ class Writer:
     def setter(self, f, owner):
         """What changes the values that a function returns, as an argument of _with."""
         other = next((g for g in self.h.functions if g.name == f.name[:-4] + "_set" and self.owner(g) == owner), None)
+        if f.name == "dem_wall_pose_get":
+            return ", 'call wall.motion_set(...), which moves the wall from there on'"
         if not other:
             return ""
         return ", 'call %s.%s(...), which changes the fields that it is given'" % (camel(owner), self.short(other, owner))
@@ -1004,7 +1007,8 @@ class Writer:
             kind = HANDLES[f.type]
             return ["return %s(%s._pointer(%s), %s%s)" % (kind, world, call, world, ", path" if "path" in dict(params) else "")]
         if f.type in h.structs:
-            return ["found = " + call, "%s._ok(0)" % world, "return %s._with(found)" % world]
+            return ["found = " + call, "%s._ok(0)" % world, "return %s._with(found%s)" % (
+                world, ", _world_call" if f.name == "dem_world_desc_get" else "")]
         if f.type == "int" and outs:
             o, size = outs[0]
             kinds = {a.name: a.type for a in f.arguments}
@@ -1161,6 +1165,7 @@ class Writer:
         return "\n".join(self.out) + "\n"
 
 
+SPOILING = {"dem_%s_fn" % name for name in "law law_rows law_rate reals body_force motion".split()}  # state is lost if they fail
 BASES = {"dem_vec3": "Vector", "dem_quat": "Numbers"}
 # functions that dem.py adds to the library; loaded where they are there
 EXTRA = [("dempy_rows", "ctypes.c_int", "ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_int, ctypes.c_void_p"),

@@ -1460,6 +1460,57 @@ def _():
     same(list(row), [2, 3, 4])
 
 
+@test("after a law or a force field has raised, later calls say so first, with the step")
+def _():
+    for kind in ("law", "force", "body_force"):
+        armed = []
+
+        def fails(*arguments):
+            if armed:
+                raise RuntimeError("mine")
+            return (0, 0, 0) if kind == "force" else None
+        world, glass = heap(**{"law_stiffness": 1e3, "law": fails} if kind == "law" else {kind: fails})
+        world.sphere(glass, 0.01, (0, 0, 0.0099))
+        world.step(3)
+        armed.append(1)
+        raises(RuntimeError, lambda: world.step(1), "mine")
+        armed.clear()
+        text = str(raises(dem.UnstableError, lambda: world.run(0.1), "your function (%s) raised at step " % kind, "of this world; "
+                          "read a checkpoint or build it again"))
+        assert text.index("your function") < 20 and int(text.partition("at step ")[2].split()[0]) in (3, 4), text
+
+
+@test("an assignment to a field of world.desc or to the pose of a wall names the call that sets it")
+def _():
+    world, glass = heap()
+    wall = world.wall_plane(glass, (0, 0, 1), (0, 0, -1))
+    for call, word in ((lambda: setattr(world.desc, "gravity", (0, 0, 1)), "write world.gravity = ..."),
+                       (lambda: setattr(world.desc.gravity, "x", 1), "write world.gravity = ..."),
+                       (lambda: setattr(world.desc, "dt", 1), "write world.dt = ..."),
+                       (lambda: setattr(world.desc, "threads", 1), "dem.World(threads=...)"),
+                       (lambda: setattr(wall.pose, "position", (0, 0, 1)), "wall.motion_set(...)"),
+                       (lambda: setattr(wall.pose.position, "x", 1), "wall.motion_set(...)")):
+        raises(dem.FieldError, call, word)
+
+
+@test("dem.Page refuses what is not a replay, and a height that is no whole number above 0; DEM_REAL takes float or double")
+def _():
+    path = os.path.join(WORK.name, "page.html")
+    world, glass = heap()
+    world.sphere(glass, 0.01, (0, 0, 0.02))
+    with world.replay(path) as replay:
+        replay.frame_write()
+    same((dem.Page(path, 300).height, repr(dem.Page(path))), (300, "dem.Page(%r)" % path))
+    for height in (0, -1, 1.5, "560", None):
+        raises(dem.Error, lambda: dem.Page(path, height), "dem.Page: height: ")
+    raises(dem.FormatError, lambda: dem.Page(__file__), "dem.Page", "not a replay")
+    raises(dem.FileError, lambda: dem.Page(path + "l"), "dem.Page: cannot read")
+    for value in ("single", "Float"):
+        result = subprocess.run([sys.executable, "-c", "import dem"], cwd=PYTHON, env=dict(os.environ, DEM_REAL=value),
+                                capture_output=True, text=True)
+        assert "LoadError" in result.stderr and "DEM_REAL is %r" % value in result.stderr, result.stderr
+
+
 @test("a friction or rolling law without the stiffness or load that it reads raises, or warns once, by name")
 def _():
     def run(name, **fields):
@@ -1517,7 +1568,7 @@ def _():
     other.close()
     raises(dem.Error, lambda: ball.state, "Body.state: this world is closed")
     raises(dem.Error, lambda: ball.remove(), "Body.remove: this world is closed")
-    same((hasattr(ball, "shape"), hasattr(world, "__array__"), repr(dem.Page("a.html"))), (False, False, "dem.Page('a.html')"))
+    same((hasattr(ball, "shape"), hasattr(world, "__array__")), (False, False))
     same("open" in repr(world.replay(os.path.join(WORK.name, "shown.html"))), True)
 
 
