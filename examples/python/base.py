@@ -357,6 +357,11 @@ def _struct_of(kind, value, where):
     """value as a struct of this kind: None is refused."""
     if value is None:
         raise ArgumentTypeError("%s: None is given, a %s is wanted" % (where, kind.__name__))
+    if kind is Selection and (isinstance(value, (Rows, Id)) or isinstance(value, (list, tuple)) and value and isinstance(value[0], Id)):
+        raise ArgumentTypeError("%s: %s, a Selection is wanted: dem.Selection(bodies=[...])" % (where, _given(value)))
+    if kind is Grains and not isinstance(value, (Grains, dict)):
+        raise ArgumentTypeError("%s: %s, a Grains is wanted: of world.grains_read(path) or dem.Grains(positions=..., radii=...); "
+                                "world.spheres adds spheres of arrays" % (where, _given(value)))
     try:
         return kind._made(value)
     except (TypeError, ValueError, OverflowError) as error:
@@ -779,8 +784,16 @@ def _rows(value, numbers, kind, width, wanted, depth):
             found, wanted, "; leave out number 4 of each row" if width == 3 and found == 4 else ""))
 
 
+def _one_radius(radii, radius, where):
+    """Refuses a radius of all beside the radius of each."""
+    if radii is not None and radius is not None and not (isinstance(radius, (int, float)) and radius == 0):
+        raise ArgumentError("%sradii and radius are given, one of them is wanted: radii for each, or radius for all" % where)
+
+
 def _array_of(value, kind, where, width=1, count=None, null=False):
     """An array that is an argument of a call."""
+    if count == 0 and ".reals_set" in where or width == 0:
+        raise ArgumentError("%s: this world has no numbers on bodies; name them when you make it: dem.World(body_reals=\"...\")" % where)
     try:
         return _array(value, kind, width, count, null)
     except (TypeError, ValueError, OverflowError) as error:
@@ -811,10 +824,11 @@ class Array:
     """Numbers with one or two axes: a view of memory of the world, or a copy. len, indices and loops go by rows; array[i, j],
     array[i], array[1:3], array[:, 2] and array[:, :3] are parts of it. numpy.asarray(array) views it, array.tolist() is a
     list, array.view the memoryview."""
-    __slots__ = ("view",)
+    __slots__ = ("view", "_name")
 
-    def __init__(self, view):
+    def __init__(self, view, name="positions"):
         self.view = view if isinstance(view, memoryview) else memoryview(view)
+        self._name = name                                   # of an array of all bodies, for error messages
 
     def __getattr__(self, name):                            # shape, tolist, nbytes, ...
         if name[:2] == "__":
@@ -878,8 +892,20 @@ class Array:
     def __setitem__(self, index, value):
         view = self.view
         if view.readonly:
-            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change, and "
-                                    "world.bodies.positions = array sets all positions")
+            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change; %s" % (
+                "world.bodies.%s = array sets all rows" % self._name if self._name in ("positions", "velocities", "spins") else
+                _SETTERS.get(self._name) or "dem.h computes the %s" % self._name))
+
+    def _no_sums(self, other):
+        """Arithmetic, which is that of numpy. An array of numpy on the other side answers itself."""
+        if hasattr(other, "__array__") and not isinstance(other, (Array, Struct)):
+            return NotImplemented
+        raise ArgumentTypeError("Array has no arithmetic; write numpy.asarray(a) - ..., numpy.asarray(a)*2 and so on")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __pow__ = _no_sums
+
+    def __neg__(self):
+        return self._no_sums(0)
         part = self[index]
         try:
             if not isinstance(part, Array):
@@ -1017,6 +1043,8 @@ class Struct(ctypes.Structure):
 
     def _put(self, fields, where=None):
         where = where or type(self).__name__ + "."
+        if "radii" in fields and "radius" in fields and not isinstance(self.kinds.get("radius"), View):
+            _one_radius(fields["radii"], fields["radius"], where)
         for name in fields:
             if name not in self.kinds:
                 raise ArgumentTypeError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
@@ -1703,10 +1731,10 @@ def _references():
 _ONE, _TWO = _references()
 
 
-def _kept(name):
+def _kept(name, kind):
     """The exception of a function that keeps an argument whose memory dem.h uses again."""
-    return ArgumentError("your function keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
-                         "copy.copy(%s), or the numbers that you need" % (name, name))
+    return ArgumentError("your function (%s) keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
+                         "copy.copy(%s), or the numbers that you need" % (kind, name, name))
 
 
 def _beyond(error, kind, **arrays):
@@ -1768,7 +1796,31 @@ def _in_python(text):
     head, colon, rest = text.partition(": ")
     names = {function.replace("dempy_", "dem_"): name[0].lower() + name[1:] if "." in name else "dem." + name
              for function, _, _, name, _ in _FUNCTIONS if not function.startswith(("dempy_rows", "dempy_ids", "dempy_put"))}
-    return head + colon + re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+    for words, in_python in _PHRASES:
+        rest = re.sub(words, in_python, rest)
+    rest = re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+    return head + colon + re.sub(r"\bDEM_\w+\b", lambda found: _CONSTANTS.get(found.group(0), found.group(0)), rest)
+
+
+def _desc_field(found):
+    """A field of a desc in an error message of dem.h."""
+    name = found.group(1)
+    return "World(%s=...)" % name if name in WorldDesc.kinds else name
+
+
+_PHRASES = (        # of error messages of dem.h, and what is written in Python
+    (r"start from DEM_SIZES and set what this kind needs", "give the fields that this kind needs"),
+    (r"start from DEM_[A-Z]+(?:_DESC)? and set (?=\w+$)", "give only the fields that differ from their defaults, and "),
+    (r"start from DEM_[A-Z]+(?:_DESC)?(?: and set only what differs)?", "give only the fields that differ from their defaults"),
+    (r"start from dem_pair_get and change only what differs", "give only the fields that change"),
+    (r"set it in the desc before the call", "give it as an argument of the call"),
+    (r"set desc\.boundary\[(\d)\] to DEM_BOUNDARY_PERIODIC", r"make axis \1 periodic with World(boundary=...)"),
+    (r"an output of kind DEM_OUTPUT_CALL", "an output of kind 'call', world.output(kind='call', function=...)"),
+    (r"\bdesc\.(\w+) = (\w+)", r"World(\1=\2)"),
+    (r"; set it when the world is created", "; set it when you make the world"),
+    (r"(?<![\w.])desc\.(\w+)(?!\w|\()", _desc_field),
+    (r"\bmust be a DEM_[A-Z]+_ value", "must be one of its words"),
+)
 
 
 _thread = threading.get_ident
@@ -2098,7 +2150,7 @@ class WorldBase(Handle):
             text = (_lib.dem_world_create_error_get(bound) or b"").decode()
             name = text.partition(": ")[2].partition(" ")[0]
             value = getattr(desc, name, None) if name in desc.kinds else None
-            raise ArgumentError(text + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
+            raise ArgumentError(_in_python(text) + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
         self._memory = _Memory(at, self._context)
 
     @classmethod
@@ -2330,7 +2382,7 @@ class Rows:
             for i, row in enumerate(rows):
                 array[width*i:width*i + width] = pointer[width*row:width*row + width]
         view = memoryview(array).cast("B")
-        return Array(view.cast(item._type_, (count, width) if axis else (count,)).toreadonly())
+        return Array(view.cast(item._type_, (count, width) if axis else (count,)).toreadonly(), name)
 
     def _all(self):
         """The ids of all bodies."""

@@ -597,6 +597,11 @@ def _struct_of(kind, value, where):
     """value as a struct of this kind: None is refused."""
     if value is None:
         raise ArgumentTypeError("%s: None is given, a %s is wanted" % (where, kind.__name__))
+    if kind is Selection and (isinstance(value, (Rows, Id)) or isinstance(value, (list, tuple)) and value and isinstance(value[0], Id)):
+        raise ArgumentTypeError("%s: %s, a Selection is wanted: dem.Selection(bodies=[...])" % (where, _given(value)))
+    if kind is Grains and not isinstance(value, (Grains, dict)):
+        raise ArgumentTypeError("%s: %s, a Grains is wanted: of world.grains_read(path) or dem.Grains(positions=..., radii=...); "
+                                "world.spheres adds spheres of arrays" % (where, _given(value)))
     try:
         return kind._made(value)
     except (TypeError, ValueError, OverflowError) as error:
@@ -1019,8 +1024,16 @@ def _rows(value, numbers, kind, width, wanted, depth):
             found, wanted, "; leave out number 4 of each row" if width == 3 and found == 4 else ""))
 
 
+def _one_radius(radii, radius, where):
+    """Refuses a radius of all beside the radius of each."""
+    if radii is not None and radius is not None and not (isinstance(radius, (int, float)) and radius == 0):
+        raise ArgumentError("%sradii and radius are given, one of them is wanted: radii for each, or radius for all" % where)
+
+
 def _array_of(value, kind, where, width=1, count=None, null=False):
     """An array that is an argument of a call."""
+    if count == 0 and ".reals_set" in where or width == 0:
+        raise ArgumentError("%s: this world has no numbers on bodies; name them when you make it: dem.World(body_reals=\"...\")" % where)
     try:
         return _array(value, kind, width, count, null)
     except (TypeError, ValueError, OverflowError) as error:
@@ -1051,10 +1064,11 @@ class Array:
     """Numbers with one or two axes: a view of memory of the world, or a copy. len, indices and loops go by rows; array[i, j],
     array[i], array[1:3], array[:, 2] and array[:, :3] are parts of it. numpy.asarray(array) views it, array.tolist() is a
     list, array.view the memoryview."""
-    __slots__ = ("view",)
+    __slots__ = ("view", "_name")
 
-    def __init__(self, view):
+    def __init__(self, view, name="positions"):
         self.view = view if isinstance(view, memoryview) else memoryview(view)
+        self._name = name                                   # of an array of all bodies, for error messages
 
     def __getattr__(self, name):                            # shape, tolist, nbytes, ...
         if name[:2] == "__":
@@ -1118,8 +1132,20 @@ class Array:
     def __setitem__(self, index, value):
         view = self.view
         if view.readonly:
-            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change, and "
-                                    "world.bodies.positions = array sets all positions")
+            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change; %s" % (
+                "world.bodies.%s = array sets all rows" % self._name if self._name in ("positions", "velocities", "spins") else
+                _SETTERS.get(self._name) or "dem.h computes the %s" % self._name))
+
+    def _no_sums(self, other):
+        """Arithmetic, which is that of numpy. An array of numpy on the other side answers itself."""
+        if hasattr(other, "__array__") and not isinstance(other, (Array, Struct)):
+            return NotImplemented
+        raise ArgumentTypeError("Array has no arithmetic; write numpy.asarray(a) - ..., numpy.asarray(a)*2 and so on")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __pow__ = _no_sums
+
+    def __neg__(self):
+        return self._no_sums(0)
         part = self[index]
         try:
             if not isinstance(part, Array):
@@ -1257,6 +1283,8 @@ class Struct(ctypes.Structure):
 
     def _put(self, fields, where=None):
         where = where or type(self).__name__ + "."
+        if "radii" in fields and "radius" in fields and not isinstance(self.kinds.get("radius"), View):
+            _one_radius(fields["radii"], fields["radius"], where)
         for name in fields:
             if name not in self.kinds:
                 raise ArgumentTypeError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
@@ -1943,10 +1971,10 @@ def _references():
 _ONE, _TWO = _references()
 
 
-def _kept(name):
+def _kept(name, kind):
     """The exception of a function that keeps an argument whose memory dem.h uses again."""
-    return ArgumentError("your function keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
-                         "copy.copy(%s), or the numbers that you need" % (name, name))
+    return ArgumentError("your function (%s) keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
+                         "copy.copy(%s), or the numbers that you need" % (kind, name, name))
 
 
 def _beyond(error, kind, **arrays):
@@ -2008,7 +2036,31 @@ def _in_python(text):
     head, colon, rest = text.partition(": ")
     names = {function.replace("dempy_", "dem_"): name[0].lower() + name[1:] if "." in name else "dem." + name
              for function, _, _, name, _ in _FUNCTIONS if not function.startswith(("dempy_rows", "dempy_ids", "dempy_put"))}
-    return head + colon + re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+    for words, in_python in _PHRASES:
+        rest = re.sub(words, in_python, rest)
+    rest = re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+    return head + colon + re.sub(r"\bDEM_\w+\b", lambda found: _CONSTANTS.get(found.group(0), found.group(0)), rest)
+
+
+def _desc_field(found):
+    """A field of a desc in an error message of dem.h."""
+    name = found.group(1)
+    return "World(%s=...)" % name if name in WorldDesc.kinds else name
+
+
+_PHRASES = (        # of error messages of dem.h, and what is written in Python
+    (r"start from DEM_SIZES and set what this kind needs", "give the fields that this kind needs"),
+    (r"start from DEM_[A-Z]+(?:_DESC)? and set (?=\w+$)", "give only the fields that differ from their defaults, and "),
+    (r"start from DEM_[A-Z]+(?:_DESC)?(?: and set only what differs)?", "give only the fields that differ from their defaults"),
+    (r"start from dem_pair_get and change only what differs", "give only the fields that change"),
+    (r"set it in the desc before the call", "give it as an argument of the call"),
+    (r"set desc\.boundary\[(\d)\] to DEM_BOUNDARY_PERIODIC", r"make axis \1 periodic with World(boundary=...)"),
+    (r"an output of kind DEM_OUTPUT_CALL", "an output of kind 'call', world.output(kind='call', function=...)"),
+    (r"\bdesc\.(\w+) = (\w+)", r"World(\1=\2)"),
+    (r"; set it when the world is created", "; set it when you make the world"),
+    (r"(?<![\w.])desc\.(\w+)(?!\w|\()", _desc_field),
+    (r"\bmust be a DEM_[A-Z]+_ value", "must be one of its words"),
+)
 
 
 _thread = threading.get_ident
@@ -2338,7 +2390,7 @@ class WorldBase(Handle):
             text = (_lib.dem_world_create_error_get(bound) or b"").decode()
             name = text.partition(": ")[2].partition(" ")[0]
             value = getattr(desc, name, None) if name in desc.kinds else None
-            raise ArgumentError(text + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
+            raise ArgumentError(_in_python(text) + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
         self._memory = _Memory(at, self._context)
 
     @classmethod
@@ -2570,7 +2622,7 @@ class Rows:
             for i, row in enumerate(rows):
                 array[width*i:width*i + width] = pointer[width*row:width*row + width]
         view = memoryview(array).cast("B")
-        return Array(view.cast(item._type_, (count, width) if axis else (count,)).toreadonly())
+        return Array(view.cast(item._type_, (count, width) if axis else (count,)).toreadonly(), name)
 
     def _all(self):
         """The ids of all bodies."""
@@ -3791,11 +3843,11 @@ def _wrap_dem_law_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'law')
             if _refs(_c) > _ONE and _held(_c):
-                raise _kept('c')
+                raise _kept('c', 'law')
             if _refs(_memory) > _ONE and _held(_memory):
-                raise _kept('memory')
+                raise _kept('memory', 'law')
             if _refs(_force) > _ONE and _held(_force):
-                raise _kept('force')
+                raise _kept('force', 'law')
         except BaseException as error:
             context.fail(_beyond(error, 'law', memory=memory_type) if type(error) is IndexError else error, 'law')
             Real.from_address(force).value = _NAN
@@ -3816,7 +3868,7 @@ def _wrap_dem_law_rows_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'law_rows')
             if _refs(_rows) > _ONE and _held(_rows):
-                raise _kept('rows')
+                raise _kept('rows', 'law_rows')
         except BaseException as error:
             context.fail(error, 'law_rows')
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p)(call), LawRowsFn.c)
@@ -3838,9 +3890,9 @@ def _wrap_dem_law_rate_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'law_rate')
             if _refs(_c) > _ONE and _held(_c):
-                raise _kept('c')
+                raise _kept('c', 'law_rate')
             if _refs(_rates) > _ONE and _held(_rates):
-                raise _kept('rates')
+                raise _kept('rates', 'law_rate')
         except BaseException as error:
             context.fail(_beyond(error, 'law_rate', rates=rates_type) if type(error) is IndexError else error, 'law_rate')
             Real.from_address(rates).value = _NAN
@@ -3897,11 +3949,11 @@ def _wrap_dem_reals_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'reals')
             if _refs(_reals) > _ONE and _held(_reals):
-                raise _kept('reals')
+                raise _kept('reals', 'reals')
             if _refs(_rates) > _ONE and _held(_rates):
-                raise _kept('rates')
+                raise _kept('rates', 'reals')
             if _refs(_body) > _ONE and _held(_body):
-                raise _kept('body')
+                raise _kept('body', 'reals')
         except BaseException as error:
             context.fail(_beyond(error, 'reals', reals=reals_type, rates=rates_type) if type(error) is IndexError else error, 'reals')
             Real.from_address(reals).value = _NAN
@@ -3920,7 +3972,7 @@ def _wrap_dem_growth_fn(function, context, struct):
             _body = body_of(body)
             result = _real_from(function(_body, id, time), 'growth')
             if _refs(_body) > _ONE and _held(_body):
-                raise _kept('body')
+                raise _kept('body', 'growth')
             return result
         except BaseException as error:
             context.fail(error)
@@ -3948,11 +4000,11 @@ def _wrap_dem_body_force_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'body_force')
             if _refs(_body) > _ONE and _held(_body):
-                raise _kept('body')
+                raise _kept('body', 'body_force')
             if _refs(_force) > _ONE and _held(_force):
-                raise _kept('force')
+                raise _kept('force', 'body_force')
             if _refs(_torque) > _ONE and _held(_torque):
-                raise _kept('torque')
+                raise _kept('torque', 'body_force')
         except BaseException as error:
             context.fail(error, 'body_force')
             Real.from_address(force).value = _NAN
@@ -4391,7 +4443,7 @@ def _wrap_dem_motion_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'motion')
             if _refs(_pose) > _ONE and _held(_pose):
-                raise _kept('pose')
+                raise _kept('pose', 'motion')
         except BaseException as error:
             context.fail(error, 'motion')
             Real.from_address(pose).value = _NAN
@@ -5103,7 +5155,7 @@ def _wrap_dem_event_fn(function, context, struct):
             _event = event_of(event)
             function(_event)
             if _refs(_event) > _ONE and _held(_event):
-                raise _kept('event')
+                raise _kept('event', 'event')
         except BaseException as error:
             context.fail(error)
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(call), EventFn.c)
@@ -5425,7 +5477,7 @@ def _wrap_dem_replay_desc_number_fn(function, context, struct):
 
     def call(world, body, user):
         try:
-            result = _real_from(function(context.world(world), body), 'replay_desc_number')
+            result = _real_from(function(context.world(world), body), 'number')
             return result
         except BaseException as error:
             context.fail(error)
@@ -5485,11 +5537,11 @@ def _wrap_dem_output_desc_values(function, context, struct):
             _values = values_type.from_address(values) if values else values_type()
             result = function(context.world(world), _values)
             if result is not None:
-                raise _returned(result, 'output_desc_values')
+                raise _returned(result, 'values')
             if _refs(_values) > _ONE and _held(_values):
-                raise _kept('values')
+                raise _kept('values', 'values')
         except BaseException as error:
-            context.fail(_beyond(error, 'output_desc_values', values=values_type) if type(error) is IndexError else error)
+            context.fail(_beyond(error, 'values', values=values_type) if type(error) is IndexError else error)
             Real.from_address(values).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), OutputDescValues.c)
 
@@ -5676,9 +5728,9 @@ def _wrap_dem_contact_fn(function, context, struct):
             _memory = memory_type.from_address(memory) if memory else memory_type()
             function(_contact, _memory)
             if _refs(_contact) > _ONE and _held(_contact):
-                raise _kept('contact')
+                raise _kept('contact', 'contact')
             if _refs(_memory) > _ONE and _held(_memory):
-                raise _kept('memory')
+                raise _kept('memory', 'contact')
         except BaseException as error:
             context.fail(_beyond(error, 'contact', memory=memory_type) if type(error) is IndexError else error)
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), ContactFn.c)
@@ -5926,6 +5978,7 @@ class World(WorldBase):
         """Adds count spheres, all or none. positions: count x 3, m. velocities: count x 3, m/s, or None for rest. radii:
         count, m, or None if all have `radius`.
         """
+        _one_radius(radii, radius, 'World.spheres: ')
         positions = _array_of(positions, Real, 'World.spheres: positions', 3)
         count = len(positions)//3
         velocities = _array_of(velocities, Real, 'World.spheres: velocities', 3, count, True)
@@ -6112,8 +6165,7 @@ class World(WorldBase):
         world.bodies_memory. Values must be finite. Laws use them from the next step on. It is an error if the world
         has no names of such numbers.
         """
-        reals = _array_of(reals, Real, 'World.bodies_reals_set: reals', max(self._context.reals, 1),
-            self.bodies.count)
+        reals = _array_of(reals, Real, 'World.bodies_reals_set: reals', self._context.reals, self.bodies.count)
         self._ok(_lib.dem_bodies_reals_set(self._c, reals))
 
     def shape_ellipsoid(self, semi_axes):
@@ -7446,6 +7498,117 @@ def trials_print(trials, out=None):
     """Prints the trials as a table, and the advice."""
     trials = _struct_of(Trials, trials, 'dem.trials_print: trials')
     return Handle()._print(_lib.dem_trials_print, out, trials)
+
+
+_CONSTANTS = {      # constants of enums, as error messages of Python show them
+    'DEM_BOUNDARY_OPEN': "'open'",
+    'DEM_BOUNDARY_OUTFLOW': "'outflow'",
+    'DEM_BOUNDARY_PERIODIC': "'periodic'",
+    'DEM_CLUSTER_CONTACTS_MERGED': "'merged'",
+    'DEM_CLUSTER_CONTACTS_SEPARATE': "'separate'",
+    'DEM_CLUSTER_GIVEN': "'given'",
+    'DEM_CLUSTER_SUM': "'sum'",
+    'DEM_CLUSTER_UNION': "'union'",
+    'DEM_CONE_CONVEX': "'convex'",
+    'DEM_CONE_COULOMB': "'coulomb'",
+    'DEM_CONVENTION_MILL': "'mill'",
+    'DEM_CONVENTION_STANDARD': "'standard'",
+    'DEM_EDGE_FRACTION': "'fraction'",
+    'DEM_EDGE_RESOLVED': "'resolved'",
+    'DEM_EFFECT_ACTIVE': "'active'",
+    'DEM_EFFECT_IDLE': "'idle'",
+    'DEM_EFFECT_OFF': "'off'",
+    'DEM_EVENT_BEGIN': "'begin'",
+    'DEM_EVENT_END': "'end'",
+    'DEM_EVENT_OPEN': "'open'",
+    'DEM_INTEGRATOR_FORWARD_EULER': "'forward_euler'",
+    'DEM_INTEGRATOR_LEAPFROG': "'leapfrog'",
+    'DEM_INTEGRATOR_POSITION_VERLET': "'position_verlet'",
+    'DEM_INTEGRATOR_SYMPLECTIC_EULER': "'symplectic_euler'",
+    'DEM_INTEGRATOR_VELOCITY_VERLET': "'velocity_verlet'",
+    'DEM_JOINT_NONE': "'none'",
+    'DEM_JOINT_POINT': "'point'",
+    'DEM_JOINT_REVOLUTE': "'revolute'",
+    'DEM_LOAD_ELASTIC': "'elastic'",
+    'DEM_LOAD_MAGNITUDE': "'magnitude'",
+    'DEM_LOAD_REPULSIVE': "'repulsive'",
+    'DEM_MOTION_FIXED': "'fixed'",
+    'DEM_MOTION_OSCILLATING': "'oscillating'",
+    'DEM_MOTION_ROTATING': "'rotating'",
+    'DEM_MOTION_SERVO': "'servo'",
+    'DEM_MOTION_TABLE': "'table'",
+    'DEM_MOTION_TRANSLATING': "'translating'",
+    'DEM_MOTION_USER': "'user'",
+    'DEM_MOTOR_NONE': "'none'",
+    'DEM_MOTOR_SPEED': "'speed'",
+    'DEM_MOTOR_TORQUE': "'torque'",
+    'DEM_NORMAL_HERTZ': "'hertz'",
+    'DEM_NORMAL_HYSTERETIC': "'hysteretic'",
+    'DEM_NORMAL_LINEAR': "'linear'",
+    'DEM_OUTPUT_BODIES_CSV': "'bodies_csv'",
+    'DEM_OUTPUT_CALL': "'call'",
+    'DEM_OUTPUT_CHECKPOINT': "'checkpoint'",
+    'DEM_OUTPUT_CONTACTS': "'contacts'",
+    'DEM_OUTPUT_CONTACTS_CSV': "'contacts_csv'",
+    'DEM_OUTPUT_CSV': "'csv'",
+    'DEM_OUTPUT_FIELD_CSV': "'field_csv'",
+    'DEM_OUTPUT_SURFACES': "'surfaces'",
+    'DEM_OUTPUT_VTP': "'vtp'",
+    'DEM_OUTPUT_WALLS': "'walls'",
+    'DEM_OUTPUT_XYZ': "'xyz'",
+    'DEM_OVERLAP_CHORD': "'chord'",
+    'DEM_OVERLAP_CONSERVATIVE': "'conservative'",
+    'DEM_OVERLAP_NORMAL': "'normal'",
+    'DEM_RESPONSE_IMPULSES': "'impulses'",
+    'DEM_RESPONSE_SPRINGS': "'springs'",
+    'DEM_ROLLING_AUTO': "'auto'",
+    'DEM_ROLLING_CONSTANT': "'constant'",
+    'DEM_ROLLING_EPSD': "'epsd'",
+    'DEM_ROLLING_NONE': "'none'",
+    'DEM_ROLLING_STEP': "'step'",
+    'DEM_ROTATION_FINCHAM': "'fincham'",
+    'DEM_ROTATION_NO_SQUISH': "'no_squish'",
+    'DEM_ROTATION_SPIRAL': "'spiral'",
+    'DEM_SEARCH_ALL_PAIRS': "'all_pairs'",
+    'DEM_SEARCH_AUTO': "'auto'",
+    'DEM_SEARCH_BINS': "'bins'",
+    'DEM_SEARCH_GRID': "'grid'",
+    'DEM_SEARCH_HIERARCHICAL': "'hierarchical'",
+    'DEM_SEARCH_LINKED_LIST': "'linked_list'",
+    'DEM_SEVERITY_ERROR': "'error'",
+    'DEM_SEVERITY_NOTE': "'note'",
+    'DEM_SEVERITY_WARNING': "'warning'",
+    'DEM_SIEVE_BARS': "'bars'",
+    'DEM_SIEVE_NONE': "'none'",
+    'DEM_SIEVE_REDUCED': "'reduced'",
+    'DEM_SIEVE_ROUND': "'round'",
+    'DEM_SIEVE_SLOTS': "'slots'",
+    'DEM_SIEVE_SQUARE': "'square'",
+    'DEM_SIEVE_WIRES': "'wires'",
+    'DEM_SIZES_EXPONENTIAL': "'exponential'",
+    'DEM_SIZES_LOGNORMAL': "'lognormal'",
+    'DEM_SIZES_NORMAL': "'normal'",
+    'DEM_SIZES_SIEVE_CURVE': "'sieve_curve'",
+    'DEM_SIZES_UNIFORM': "'uniform'",
+    'DEM_SIZES_WEIBULL': "'weibull'",
+    'DEM_SLIDER_PARALLEL': "'parallel'",
+    'DEM_SLIDER_REMAINDER': "'remainder'",
+    'DEM_SLIDER_SPRING': "'spring'",
+    'DEM_SOLVER_APGD': "'apgd'",
+    'DEM_SOLVER_GAUSS_SEIDEL': "'gauss_seidel'",
+    'DEM_SOLVER_JACOBI': "'jacobi'",
+    'DEM_SOLVER_SPECTRAL': "'spectral'",
+    'DEM_TANGENT_AUTO': "'auto'",
+    'DEM_TANGENT_MINDLIN': "'mindlin'",
+    'DEM_TANGENT_MINDLIN_RESCALED': "'mindlin_rescaled'",
+    'DEM_TANGENT_NONE': "'none'",
+    'DEM_TANGENT_SPRING': "'spring'",
+    'DEM_TANGENT_STEP': "'step'",
+    'DEM_TANGENT_VISCOUS': "'viscous'",
+    'DEM_TENSION_ALLOWED': "'allowed'",
+    'DEM_TENSION_CLIPPED': "'clipped'",
+    'DEM_TENSION_COMPENSATED': "'compensated'",
+}
 
 
 _FUNCTIONS = [

@@ -413,6 +413,7 @@ class Writer:
         names = [v[0] for v in values]
         prefix = os.path.commonprefix(names)
         prefix = prefix[:prefix.rindex("_") + 1]
+        self.constants.update((value, repr(value[len(prefix):].lower())) for value in names if name != "dem_result")
         if name == "dem_result":
             prefix = "DEM_"
         self.write("\n\nclass %s(enum.IntEnum):" % camel(name))
@@ -471,7 +472,7 @@ class Writer:
         for name_, made in kept:
             self.write("            _%s = %s" % (name_, made))
         call = "function(%s)" % ", ".join(given)
-        about = re.sub("^dem_|_fn$", "", f.name)
+        about = re.sub("^dem_(replay_desc_|output_desc_)?|_fn$", "", f.name)
         if result == "None":
             if f.name in ("dem_contact_fn", "dem_event_fn", "dem_allocator_free_fn"):
                 self.write("            %s" % call)
@@ -488,7 +489,7 @@ class Writer:
                 call, " or context.stop" if f.name == "dem_progress_fn" else ""))
         for name_, _ in kept:
             self.write("            if _refs(_%s) > _ONE and _held(_%s):" % (name_, name_))
-            self.write("                raise _kept(%r)" % name_)
+            self.write("                raise _kept(%r, %r)" % (name_, about))
         if result not in ("None", "ctypes.c_void_p"):
             self.write("            return result")
         self.write("        except BaseException as error:")
@@ -659,7 +660,7 @@ class Writer:
                     rows = "%s.bodies.count" % world
                     pre.append("%s = _array_of(%s, %s, %s, %s)" % (
                         a.name, a.name, item, at(a), "1, %s._context.reals" % world if f.name != "dem_bodies_reals_set" else
-                        "max(%s._context.reals, 1), %s" % (world, rows)))
+                        "%s._context.reals, %s" % (world, rows)))
                 elif first:
                     pre.append("%s = _array_of(%s, %s, %s, %d)" % (a.name, source, item, at(a), width))
                     pre.append("count = len(%s)%s" % (a.name, "" if width == 1 else "//%d" % width))
@@ -771,6 +772,8 @@ class Writer:
                 note = m.doc
             if base:
                 docs.insert(0, "Fields that are not given stay as they are.")
+        if {"radii", "radius"} <= {p for p, _ in params}:
+            pre.insert(0, "_one_radius(radii, radius, %r)" % (where + ": "))
         # -- parameters with a default are last --
         if any(default is None and params[i - 1][1] is not None for i, (_, default) in enumerate(params) if i):
             params = [(p, None) for p, _ in params]
@@ -1054,7 +1057,7 @@ class Writer:
 
     def file(self):
         h = self.h
-        self.names, self.parts = {}, {}
+        self.names, self.parts, self.constants = {}, {}, {}
         self.write(HEAD)
         for name, value, note in h.constants:
             self.write("%s = %s%s" % (name[4:], value, "    # " + note if note else ""))
@@ -1139,6 +1142,10 @@ class Writer:
         for f in h.functions:
             if self.owner(f) is None and not f.name.endswith("_make") and f.name not in skip:
                 self.method(f, None)
+        self.write("\n\n_CONSTANTS = {      # constants of enums, as error messages of Python show them")
+        for value in sorted(self.constants):
+            self.write("    %r: %r," % (value, self.constants[value]))
+        self.write("}")
         self.write("\n\n_FUNCTIONS = [")
         for f in [create] + h.functions:
             if f not in inline and f.inline:

@@ -1511,6 +1511,73 @@ def _():
         assert "LoadError" in result.stderr and "DEM_REAL is %r" % value in result.stderr, result.stderr
 
 
+@test("messages name what is wanted: Selection, Grains, the array, the kind of a function, numbers on bodies, one radius, numpy")
+def _():
+    world, glass = heap(groups="a b")
+    ball = world.sphere(glass, 0.01, (0, 0, 0.02))
+    group = world.group("a")
+    for bodies in ([ball], ball, world.bodies):
+        raises(TypeError, lambda: world.bodies_group_set(bodies, group, 1), "World.bodies_group_set: selection: ", "dem.Selection(bodies=[...])")
+        raises(TypeError, lambda: world.bodies_fixed_set(bodies, 1), "World.bodies_fixed_set: selection: ", "dem.Selection(bodies=[...])")
+    same(world.bodies_group_set(dem.Selection(bodies=[ball]), group, 1), 1)
+    raises(TypeError, lambda: world.grains(glass, [(0, 0, 1, 0.01)]), "World.grains: grains: ", "a Grains is wanted", "world.spheres")
+    bodies = world.bodies
+    raises(TypeError, lambda: bodies.velocities.__setitem__((0, 0), 1), "world.bodies.velocities = array")
+    raises(TypeError, lambda: bodies.masses.__setitem__(0, 1), "body.radius_set")
+    for call in (ball.reals_set, world.bodies_reals_set):
+        raises(ValueError, lambda: call([1]), "this world has no numbers on bodies", "dem.World(body_reals=")
+    raises(ValueError, lambda: world.spheres(glass, [(0, 0, 1)], radii=[0.01], radius=0.02), "World.spheres: radii and radius are given")
+    raises(ValueError, lambda: world.shape_cluster(positions=[(0, 0, 0)], radii=[0.01], radius=0.02), "World.shape_cluster: radii and radius")
+    for call in (lambda a: a - a, lambda a: a*2, lambda a: 2*a, lambda a: a + 1, lambda a: -a, lambda a: a - [1]):
+        raises(dem.ArgumentTypeError, lambda: call(bodies.positions), "numpy.asarray(a) - ...")
+
+    class Numpy:
+        def __array__(self):
+            raise AssertionError
+
+        def __rsub__(self, other):
+            return "numpy"
+    same(bodies.positions - Numpy(), "numpy")
+    kept = []
+
+    def law(contact, memory, force):
+        kept.append(contact)
+    world = dem.World(law=law, law_stiffness=1e3)
+    glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5)
+    world.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+    world.sphere(glass, 0.01, (0, 0, 0.0099))
+    raises(dem.ArgumentError, lambda: world.step(1), "your function (law) keeps its argument c")
+    world, glass = heap()
+    world.output(kind="csv", path=os.path.join(WORK.name, "values.csv"), interval=1e-4, columns="a", values=lambda world, out: 5)
+    raises(dem.ArgumentTypeError, lambda: world.run(1e-3), "your function (values) returned 5")
+
+
+@test("error messages of dem.h speak of Python: no constants, descs or starts of C")
+def _():
+    world, glass = heap()
+    wall = world.wall_plane(glass, (0, 0, 1), (0, 0, -1))
+    for call, *words in (
+            (lambda: world.replay(os.path.join(WORK.name, "words.html"), number="heat"), "World(body_reals=...)", "World(groups=...)"),
+            (lambda: wall.motion_set(kind="user"), "'user'"),
+            (lambda: world.output(kind="call", interval=0.1), "'call'"),
+            (lambda: world.material(density=-1, young=1e7, poisson=0.25, restitution=0.5), "argument of the call"),
+            (lambda: world.events_record(), "World(ledger=...) is 0", "when you make the world"),
+            (lambda: world.cell_set(rate=(0, 0, 1)), "World("),
+            (lambda: world.feed(rate=-1), "")):
+        text = str(raises(dem.Error, call, *words))
+        assert not re.search(r"DEM_|desc\b|the desc", text.partition(": ")[2]), text
+    for c, python in (("sizes, radius: must be > 0; start from DEM_SIZES and set what this kind needs, for example radius", "give the fields that"),
+                      ("axis 2 is to be strained, but its boundary is not periodic; set desc.boundary[2] to DEM_BOUNDARY_PERIODIC, or move "
+                       "walls instead", "make axis 2 periodic with World(boundary=...), or move"),
+                      ("create the world with desc.response = DEM_RESPONSE_IMPULSES", "World(response='impulses')"),
+                      ("leave desc.solver at DEM_SOLVER_GAUSS_SEIDEL", "World(solver=...) at 'gauss_seidel'"),
+                      ("x is 2; start from DEM_FEED_DESC and set only what differs", "x is 2; give only the fields that differ from their defaults"),
+                      ("x is 2; start from DEM_TRIALS_DESC and set duration", "x is 2; give only the fields that differ from their defaults, and duration"),
+                      ("in an output of kind DEM_OUTPUT_CALL", "kind='call'"), ("group 3 does not exist, desc.groups names 2", "World(groups=...) names 2")):
+        text = dem._in_python("dem_call: " + c)
+        assert python in text and not re.search(r"DEM_|desc\.", text), text
+
+
 @test("a friction or rolling law without the stiffness or load that it reads raises, or warns once, by name")
 def _():
     def run(name, **fields):
