@@ -740,6 +740,9 @@ def _reals(value, kind, width, wanted, count):
         view = None
         if hasattr(value, "__array__") and not isinstance(value, type):     # a table of pandas
             value = value.__array__()
+    if view and len(view.format) == 2 and view.format[0] == "<>"[sys.byteorder == "big"] and view.c_contiguous and view.nbytes:
+        view = view.cast("B").cast(view.format[1], list(view.shape))        # of ctypes, with a byte order that tolist refuses
+        value = value if hasattr(value, "__array__") else view
     shape = view.shape if view else getattr(value, "shape", None)
     if isinstance(shape, tuple):
         if not shape:
@@ -895,17 +898,6 @@ class Array:
             raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change; %s" % (
                 "world.bodies.%s = array sets all rows" % self._name if self._name in ("positions", "velocities", "spins") else
                 _SETTERS.get(self._name) or "dem.h computes the %s" % self._name))
-
-    def _no_sums(self, other):
-        """Arithmetic, which is that of numpy. An array of numpy on the other side answers itself."""
-        if hasattr(other, "__array__") and not isinstance(other, (Array, Struct)):
-            return NotImplemented
-        raise ArgumentTypeError("Array has no arithmetic; write numpy.asarray(a) - ..., numpy.asarray(a)*2 and so on")
-
-    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __pow__ = _no_sums
-
-    def __neg__(self):
-        return self._no_sums(0)
         part = self[index]
         try:
             if not isinstance(part, Array):
@@ -918,6 +910,17 @@ class Array:
                 target[i] = item
         except (TypeError, ValueError) as error:
             raise _named(error, "array[%s]" % (index,)) from None
+
+    def _no_sums(self, other):
+        """Arithmetic, which is that of numpy. An array of numpy on the other side answers itself."""
+        if hasattr(other, "__array__") and not isinstance(other, (Array, Struct)):
+            return NotImplemented
+        raise ArgumentTypeError("Array has no arithmetic; write numpy.asarray(a) - ..., numpy.asarray(a)*2 and so on")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __pow__ = _no_sums
+
+    def __neg__(self):
+        return self._no_sums(0)
 
     def __iter__(self):
         view = self.view
