@@ -623,6 +623,17 @@ def _c(kind):
     return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
 
 
+def _listed(value):
+    """value.tolist(), also of a memoryview of ctypes, in whose format the byte order is written, which tolist refuses."""
+    try:
+        return value.tolist()
+    except NotImplementedError:
+        view = memoryview(value)
+        if view.format[:-1] != "<>"[sys.byteorder == "big"]:
+            raise TypeError("%s, numbers are wanted" % _given(value)) from None
+        return view.cast("B").cast(view.format[-1], view.shape).tolist() if view.nbytes else []
+
+
 def _items(value, wanted):
     """The elements of a sequence."""
     if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
@@ -630,7 +641,7 @@ def _items(value, wanted):
     if hasattr(value, "__array__") and not hasattr(value, "tolist") and not isinstance(value, type):
         value = value.__array__()                           # a table of pandas
     if hasattr(value, "tolist"):
-        value = value.tolist()
+        value = _listed(value)
     try:
         return list(value)
     except TypeError:
@@ -740,9 +751,6 @@ def _reals(value, kind, width, wanted, count):
         view = None
         if hasattr(value, "__array__") and not isinstance(value, type):     # a table of pandas
             value = value.__array__()
-    if view and len(view.format) == 2 and view.format[0] == "<>"[sys.byteorder == "big"] and view.c_contiguous and view.nbytes:
-        view = view.cast("B").cast(view.format[1], list(view.shape))        # of ctypes, with a byte order that tolist refuses
-        value = value if hasattr(value, "__array__") else view
     shape = view.shape if view else getattr(value, "shape", None)
     if isinstance(shape, tuple):
         if not shape:
@@ -753,7 +761,7 @@ def _reals(value, kind, width, wanted, count):
     if view and view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
         return (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
     if hasattr(value, "tolist"):
-        value = value.tolist()
+        value = _listed(value)
     numbers = []
     _rows(value, numbers, kind, width, wanted, 0)
     return (kind*len(numbers))(*numbers)
@@ -771,7 +779,7 @@ def _rows(value, numbers, kind, width, wanted, depth):
             numbers.append(_number(item, kind))
             continue
         if hasattr(item, "tolist"):
-            item = item.tolist()
+            item = _listed(item)
             if not hasattr(item, "__iter__"):
                 numbers.append(_number(item, kind))
                 continue

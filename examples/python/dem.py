@@ -863,6 +863,17 @@ def _c(kind):
     return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
 
 
+def _listed(value):
+    """value.tolist(), also of a memoryview of ctypes, in whose format the byte order is written, which tolist refuses."""
+    try:
+        return value.tolist()
+    except NotImplementedError:
+        view = memoryview(value)
+        if view.format[:-1] != "<>"[sys.byteorder == "big"]:
+            raise TypeError("%s, numbers are wanted" % _given(value)) from None
+        return view.cast("B").cast(view.format[-1], view.shape).tolist() if view.nbytes else []
+
+
 def _items(value, wanted):
     """The elements of a sequence."""
     if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
@@ -870,7 +881,7 @@ def _items(value, wanted):
     if hasattr(value, "__array__") and not hasattr(value, "tolist") and not isinstance(value, type):
         value = value.__array__()                           # a table of pandas
     if hasattr(value, "tolist"):
-        value = value.tolist()
+        value = _listed(value)
     try:
         return list(value)
     except TypeError:
@@ -980,9 +991,6 @@ def _reals(value, kind, width, wanted, count):
         view = None
         if hasattr(value, "__array__") and not isinstance(value, type):     # a table of pandas
             value = value.__array__()
-    if view and len(view.format) == 2 and view.format[0] == "<>"[sys.byteorder == "big"] and view.c_contiguous and view.nbytes:
-        view = view.cast("B").cast(view.format[1], list(view.shape))        # of ctypes, with a byte order that tolist refuses
-        value = value if hasattr(value, "__array__") else view
     shape = view.shape if view else getattr(value, "shape", None)
     if isinstance(shape, tuple):
         if not shape:
@@ -993,7 +1001,7 @@ def _reals(value, kind, width, wanted, count):
     if view and view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
         return (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
     if hasattr(value, "tolist"):
-        value = value.tolist()
+        value = _listed(value)
     numbers = []
     _rows(value, numbers, kind, width, wanted, 0)
     return (kind*len(numbers))(*numbers)
@@ -1011,7 +1019,7 @@ def _rows(value, numbers, kind, width, wanted, depth):
             numbers.append(_number(item, kind))
             continue
         if hasattr(item, "tolist"):
-            item = item.tolist()
+            item = _listed(item)
             if not hasattr(item, "__iter__"):
                 numbers.append(_number(item, kind))
                 continue
@@ -6527,8 +6535,8 @@ class World(WorldBase):
         The step counts (World.steps) when it is complete: the next call completes it as its first step, here or in a
         world that has read a checkpoint written meanwhile. The bits are those of a run without the interruption.
         """
-        self._ok(self._run(_lib.dem_world_step, self._c, steps) if steps != 1 or self._context.kept or
-            self._context.runs else _lib.dem_world_step(self._c, steps))
+        self._ok(self._run(_lib.dem_world_step, self._c, steps) if type(steps) is not int or steps != 1 or
+            self._context.kept or self._context.runs else _lib.dem_world_step(self._c, steps))
 
     def run(self, seconds, progress=None):
         """Advances the world by `seconds` of simulated time (>= 0), to the nearest step. Consecutive calls add up:
@@ -7282,8 +7290,8 @@ class Slabs(SlabsBase):
         """Advances all slabs by `steps` time steps (>= 0). Errors as for World.step; StoppedError also if the transport
         has failed.
         """
-        self._ok(self._run(_lib.dem_slabs_step, self._c, steps) if steps != 1 or self._context.kept or
-            self._context.runs else _lib.dem_slabs_step(self._c, steps))
+        self._ok(self._run(_lib.dem_slabs_step, self._c, steps) if type(steps) is not int or steps != 1 or
+            self._context.kept or self._context.runs else _lib.dem_slabs_step(self._c, steps))
 
     def collect(self, world):
         """Copies the state of all slabs into a world of the same scene, in every process: grains, contact history,

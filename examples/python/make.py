@@ -982,7 +982,7 @@ class Writer:
             head, inner = call.split("(", 1)
             run = "%s._ok(%s._run(%s, %s)" % (world, world, head, inner)
             if f.name.endswith("_step"):            # one step without functions of yours: nothing to interrupt
-                return ["%s._ok(%s._run(%s, %s if steps != 1 or %s._context.kept or %s._context.runs else %s)" % (
+                return ["%s._ok(%s._run(%s, %s if type(steps) is not int or steps != 1 or %s._context.kept or %s._context.runs else %s)" % (
                     world, world, head, inner, world, world, call)]
             return [run] + (["return " + ", ".join(name for name, _ in outs)] if outs else [])
         if f.type == "dem_result":

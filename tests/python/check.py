@@ -1538,6 +1538,8 @@ def _():
         def __rsub__(self, other):
             return "numpy"
     same(bodies.positions - Numpy(), "numpy")
+    same(tuple(dem.Vec3.make(memoryview((ctypes.c_int*3)(1, 2, 3)))), (1, 2, 3))
+    world.spheres(glass, memoryview((ctypes.c_int*3)(0, 0, 1)), radius=0.01)
     kept = []
 
     def law(contact, memory, force):
