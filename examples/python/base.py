@@ -1,5 +1,7 @@
 # ---- the shared library ------------------------------------------------------------------------
 
+if os.environ.get("DEM_REAL", "") not in ("", "float", "double"):
+    raise LoadError("dem.py: the environment variable DEM_REAL is %r, must be float or double" % os.environ["DEM_REAL"])
 Real = ctypes.c_float if os.environ.get("DEM_REAL") == "float" else ctypes.c_double
 _NAN = float("nan")
 _SOURCE = """
@@ -355,6 +357,11 @@ def _struct_of(kind, value, where):
     """value as a struct of this kind: None is refused."""
     if value is None:
         raise ArgumentTypeError("%s: None is given, a %s is wanted" % (where, kind.__name__))
+    if kind is Selection and (isinstance(value, (Rows, Id)) or isinstance(value, (list, tuple)) and value and isinstance(value[0], Id)):
+        raise ArgumentTypeError("%s: %s, a Selection is wanted: dem.Selection(bodies=[...])" % (where, _given(value)))
+    if kind is Grains and not isinstance(value, (Grains, dict)):
+        raise ArgumentTypeError("%s: %s, a Grains is wanted: of world.grains_read(path) or dem.Grains(positions=..., radii=...); "
+                                "world.spheres adds spheres of arrays" % (where, _given(value)))
     try:
         return kind._made(value)
     except (TypeError, ValueError, OverflowError) as error:
@@ -616,6 +623,17 @@ def _c(kind):
     return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
 
 
+def _listed(value):
+    """value.tolist(), also of a memoryview of ctypes, in whose format the byte order is written, which tolist refuses."""
+    try:
+        return value.tolist()
+    except NotImplementedError:
+        view = memoryview(value)
+        if view.format[:-1] != "<>"[sys.byteorder == "big"]:
+            raise TypeError("%s, numbers are wanted" % _given(value)) from None
+        return view.cast("B").cast(view.format[-1], view.shape).tolist() if view.nbytes else []
+
+
 def _items(value, wanted):
     """The elements of a sequence."""
     if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
@@ -623,7 +641,7 @@ def _items(value, wanted):
     if hasattr(value, "__array__") and not hasattr(value, "tolist") and not isinstance(value, type):
         value = value.__array__()                           # a table of pandas
     if hasattr(value, "tolist"):
-        value = value.tolist()
+        value = _listed(value)
     try:
         return list(value)
     except TypeError:
@@ -743,7 +761,7 @@ def _reals(value, kind, width, wanted, count):
     if view and view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
         return (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
     if hasattr(value, "tolist"):
-        value = value.tolist()
+        value = _listed(value)
     numbers = []
     _rows(value, numbers, kind, width, wanted, 0)
     return (kind*len(numbers))(*numbers)
@@ -761,7 +779,7 @@ def _rows(value, numbers, kind, width, wanted, depth):
             numbers.append(_number(item, kind))
             continue
         if hasattr(item, "tolist"):
-            item = item.tolist()
+            item = _listed(item)
             if not hasattr(item, "__iter__"):
                 numbers.append(_number(item, kind))
                 continue
@@ -777,8 +795,16 @@ def _rows(value, numbers, kind, width, wanted, depth):
             found, wanted, "; leave out number 4 of each row" if width == 3 and found == 4 else ""))
 
 
+def _one_radius(radii, radius, where):
+    """Refuses a radius of all beside the radius of each."""
+    if radii is not None and radius is not None and not (isinstance(radius, (int, float)) and radius == 0):
+        raise ArgumentError("%sradii and radius are given, one of them is wanted: radii for each, or radius for all" % where)
+
+
 def _array_of(value, kind, where, width=1, count=None, null=False):
     """An array that is an argument of a call."""
+    if count == 0 and ".reals_set" in where or width == 0:
+        raise ArgumentError("%s: this world has no numbers on bodies; name them when you make it: dem.World(body_reals=\"...\")" % where)
     try:
         return _array(value, kind, width, count, null)
     except (TypeError, ValueError, OverflowError) as error:
@@ -786,7 +812,8 @@ def _array_of(value, kind, where, width=1, count=None, null=False):
 
 
 def _view(pointer, kind, shape, owner, const):
-    """The memory behind a pointer as a memoryview of this shape (of structs: as a C array); None for null."""
+    """The memory behind a pointer as a memoryview of this shape (of structs: as a C array); None for
+    null, and of numbers also if there are none."""
     if not pointer:
         return None
     count = 1
@@ -796,9 +823,11 @@ def _view(pointer, kind, shape, owner, const):
         array = _row(kind, count).from_address(ctypes.addressof(pointer.contents)) if count else _row(kind, 0)()
         array.owner, array._call = owner, owner._call
         return array
-    array = (kind*count).from_address(ctypes.addressof(pointer.contents)) if count else (kind*0)()
+    if not count:
+        return None
+    array = (kind*count).from_address(ctypes.addressof(pointer.contents))
     array.owner = owner                                     # the world lives as long as the view
-    view = memoryview(array).cast("B").cast(array._type_._type_, *([list(shape)] if count else []))
+    view = memoryview(array).cast("B").cast(array._type_._type_, list(shape))
     return Array(view.toreadonly() if const else view)
 
 
@@ -806,10 +835,11 @@ class Array:
     """Numbers with one or two axes: a view of memory of the world, or a copy. len, indices and loops go by rows; array[i, j],
     array[i], array[1:3], array[:, 2] and array[:, :3] are parts of it. numpy.asarray(array) views it, array.tolist() is a
     list, array.view the memoryview."""
-    __slots__ = ("view",)
+    __slots__ = ("view", "_name")
 
-    def __init__(self, view):
+    def __init__(self, view, name="positions"):
         self.view = view if isinstance(view, memoryview) else memoryview(view)
+        self._name = name                                   # of an array of all bodies, for error messages
 
     def __getattr__(self, name):                            # shape, tolist, nbytes, ...
         if name[:2] == "__":
@@ -873,8 +903,9 @@ class Array:
     def __setitem__(self, index, value):
         view = self.view
         if view.readonly:
-            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change, and "
-                                    "world.bodies.positions = array sets all positions")
+            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change; %s" % (
+                "world.bodies.%s = array sets all rows" % self._name if self._name in ("positions", "velocities", "spins") else
+                _SETTERS.get(self._name) or "dem.h computes the %s" % self._name))
         part = self[index]
         try:
             if not isinstance(part, Array):
@@ -887,6 +918,17 @@ class Array:
                 target[i] = item
         except (TypeError, ValueError) as error:
             raise _named(error, "array[%s]" % (index,)) from None
+
+    def _no_sums(self, other):
+        """Arithmetic, which is that of numpy. An array of numpy on the other side answers itself."""
+        if hasattr(other, "__array__") and not isinstance(other, (Array, Struct)):
+            return NotImplemented
+        raise ArgumentTypeError("Array has no arithmetic; write numpy.asarray(a) - ..., numpy.asarray(a)*2 and so on")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __pow__ = _no_sums
+
+    def __neg__(self):
+        return self._no_sums(0)
 
     def __iter__(self):
         view = self.view
@@ -1012,6 +1054,8 @@ class Struct(ctypes.Structure):
 
     def _put(self, fields, where=None):
         where = where or type(self).__name__ + "."
+        if "radii" in fields and "radius" in fields and not isinstance(self.kinds.get("radius"), View):
+            _one_radius(fields["radii"], fields["radius"], where)
         for name in fields:
             if name not in self.kinds:
                 raise ArgumentTypeError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
@@ -1121,7 +1165,7 @@ class Struct(ctypes.Structure):
         base = self
         while base is not None:
             if getattr(base, "_call", None):
-                _changed(self, "%s.%s" % (type(self).__name__, name))
+                _changed(self, "%s.%s" % (type(self).__name__, name), name)
             base = getattr(base, "_b_base_", None)
         if kind is ctypes.c_double and type(value) is float:
             _set(self, name, value)
@@ -1193,6 +1237,17 @@ class Struct(ctypes.Structure):
         except IndexError:
             raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
 
+    def __setitem__(self, index, value):
+        if not isinstance(index, str):
+            try:
+                index = list(self.kinds)[operator.index(index)]
+            except TypeError:
+                raise ArgumentTypeError("%s[...]: %s, the number or the name of a field is wanted" % (
+                    type(self).__name__, _given(index))) from None
+            except IndexError:
+                raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
+        setattr(self, index, value)
+
     def keys(self):
         """The names of the fields: dict(struct) and pandas use them."""
         return list(self.kinds)
@@ -1258,14 +1313,32 @@ def _read(kind):
                                          "__doc__": kind.__doc__})
 
 
-def _changed(base, what):
-    """Refuses to change a part of a struct that a call has returned, or that a function may only read."""
+def _field_at(struct, part):
+    """The name of the field of a struct that contains a part of it."""
+    at = ctypes.addressof(part) - ctypes.addressof(struct)
+    return next((name for (raw, _), name in zip(struct._fields_, struct.kinds) if 0 <= at - getattr(type(struct), raw).offset < getattr(
+        type(struct), raw).size), "")
+
+
+def _world_call(name):
+    """What changes a field of world.desc, as the end of an error message."""
+    if isinstance(getattr(World, name, None), property) and getattr(World, name).fset:
+        return "write world.%s = ..." % name
+    return "call world.%s_set(...)" % name if hasattr(World, name + "_set") else "write dem.World(%s=...) when you make the world" % name
+
+
+def _changed(base, what, field=None):
+    """Refuses to change a part of a struct that a call has returned, or that a function may only read. field: of the struct
+    itself."""
+    first = base
     while base is not None:
         call = getattr(base, "_call", None)
+        if callable(call):
+            call = call(field or _field_at(base, first))
         if call:
             raise FieldError("%s cannot be set; %s" % (what, call) if getattr(base, "plain", None) else
                              "%s: this is a copy, whose change would have no effect; %s" % (what, call))
-        base = getattr(base, "_b_base_", None)
+        base, field = getattr(base, "_b_base_", None), None
 
 
 def _raw(kind):
@@ -1400,6 +1473,36 @@ class Numbers(Struct):
             return NotImplemented                           # an array of numpy answers itself
         return type(self)(*[function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
 
+    def _in_place(self, other, function, sign):
+        """v += w and the like, which change v itself: `force += ...` in a function of yours has an effect on its argument."""
+        name = type(self).__name__
+        if getattr(self._b_base_, "_assigns", None):        # of a property with a setter, which gets the sum
+            return self._with_each(other, function)
+        _changed(self, "%s %s ..." % (name, sign))
+        if hasattr(other, "__len__") and not isinstance(other, (Numbers, Row, tuple, list)):
+            try:
+                other = _items(other, "%d numbers" % len(self))     # an array of numpy would take the place of v
+            except TypeError as error:
+                raise _named(error, "%s %s ..." % (name, sign)) from None
+        made = self._with_each(other, function)
+        if made is NotImplemented:
+            raise ArgumentTypeError("%s %s ...: %s, a number or %d numbers are wanted" % (name, sign, _given(other), len(self)))
+        for i, value in enumerate(made):
+            self[i] = value
+        return self
+
+    def __iadd__(self, other):
+        return self._in_place(other, operator.add, "+=")
+
+    def __isub__(self, other):
+        return self._in_place(other, operator.sub, "-=")
+
+    def __imul__(self, other):
+        return self._in_place(other, operator.mul, "*=")
+
+    def __itruediv__(self, other):
+        return self._in_place(other, operator.truediv, "/=")
+
     def __add__(self, other):
         return self._with_each(other, operator.add)
 
@@ -1436,8 +1539,9 @@ class Numbers(Struct):
         return sum(a*b for a, b in zip(self, type(self)._made(other)))
 
 
-for _name in "add radd sub rsub mul rmul truediv rtruediv abs".split():
+for _name in "add radd sub rsub mul rmul truediv rtruediv abs iadd isub imul itruediv".split():
     setattr(Row, "__%s__" % _name, getattr(Numbers, "__%s__" % _name))
+Row._in_place = Numbers._in_place
 
 
 class Vector(Numbers):
@@ -1608,10 +1712,14 @@ class _Context:
     def __init__(self, world):
         self.raised, self.kept, self.go_on, self.memory, self.vectors, self.reals = None, {}, None, 0, 0, 0
         self.world_of, self.runs, self.ids, self.stop = weakref.ref(world), None, None, False
+        self.spoils, self.spoilt, self.names = None, None, {}   # the function that raised; the same, and the step
 
-    def fail(self, error):
+    def fail(self, error, kind=None):
+        """Notes an exception of a function. kind: of one whose failure spoils the state, such as a law."""
         if self.raised is None:
             self.raised = error
+        if kind and not self.spoils:
+            self.spoils = self.names.get(kind, kind)
 
     def world(self, pointer):
         world = self.world_of()
@@ -1634,10 +1742,10 @@ def _references():
 _ONE, _TWO = _references()
 
 
-def _kept(name):
+def _kept(name, kind):
     """The exception of a function that keeps an argument whose memory dem.h uses again."""
-    return ArgumentError("your function keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
-                         "copy.copy(%s), or the numbers that you need" % (name, name))
+    return ArgumentError("your function (%s) keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
+                         "copy.copy(%s), or the numbers that you need" % (kind, name, name))
 
 
 def _beyond(error, kind, **arrays):
@@ -1699,7 +1807,34 @@ def _in_python(text):
     head, colon, rest = text.partition(": ")
     names = {function.replace("dempy_", "dem_"): name[0].lower() + name[1:] if "." in name else "dem." + name
              for function, _, _, name, _ in _FUNCTIONS if not function.startswith(("dempy_rows", "dempy_ids", "dempy_put"))}
-    return head + colon + re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+    for words, in_python in _PHRASES:
+        rest = re.sub(words, in_python, rest)
+    rest = re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+    return head + colon + re.sub(r"\bDEM_\w+\b", lambda found: _CONSTANTS.get(found.group(0), found.group(0)), rest)
+
+
+def _desc_field(found):
+    """A field of a desc in an error message of dem.h."""
+    name = found.group(1)
+    return "World(%s=...)" % name if name in WorldDesc.kinds else name
+
+
+_PHRASES = (        # of error messages of dem.h, and what is written in Python
+    (r"start from DEM_SIZES and set what this kind needs", "give the fields that this kind needs"),
+    (r"start from DEM_[A-Z]+(?:_DESC)? and set (?=\w+$)", "give only the fields that differ from their defaults, and "),
+    (r"start from DEM_[A-Z]+(?:_DESC)?(?: and set only what differs)?", "give only the fields that differ from their defaults"),
+    (r"start from dem_pair_get and change only what differs", "give only the fields that change"),
+    (r"set it in the desc before the call", "give it as an argument of the call"),
+    (r"set desc\.boundary\[(\d)\] to DEM_BOUNDARY_PERIODIC", r"make axis \1 periodic with World(boundary=...)"),
+    (r"an output of kind DEM_OUTPUT_CALL", "an output of kind 'call', world.output(kind='call', function=...)"),
+    (r"\bdesc\.(\w+) = (\w+)", r"World(\1=\2)"),
+    (r"; set it when the world is created", "; set it when you make the world"),
+    (r"(?<![\w.])desc\.(\w+)(?!\w|\()", _desc_field),
+    (r"\bmust be a DEM_[A-Z]+_ value", "must be one of its words"),
+)
+
+
+_thread = threading.get_ident
 
 
 class Handle:
@@ -1709,12 +1844,20 @@ class Handle:
     @property
     def _c(self):
         """The pointer, for a call."""
-        at = self._at
-        if at is None:
-            frame = sys._getframe(1)                        # of a method, perhaps of an id
-            raise ArgumentError("%s.%s: this %s is closed" % (type(frame.f_locals.get("self", self)).__name__, frame.f_code.co_name,
-                                                             type(self).__name__.lower()))
+        at, context = self._at, self._context
+        if at is None or context and context.runs is not None and context.runs != _thread():
+            self._refuse()
         return at
+
+    def _refuse(self):
+        """Raises if this is closed, or if another thread runs the world. A law may be called in any thread of the run."""
+        frame = sys._getframe(2)                            # of a method, perhaps of an id
+        own = frame.f_locals.get("self", self)
+        name = "%s.%s" % ("World.bodies" if isinstance(own, Rows) else type(own).__name__, frame.f_code.co_name)
+        if self._at is None:
+            raise ArgumentError("%s: this %s is closed" % (name, type(self).__name__.lower()))
+        if not self._called():
+            raise ArgumentError("%s: another thread runs this world; one thread at a time may use a world" % name)
 
     def __setattr__(self, name, value):
         found, kind = getattr(type(self), name, None), type(self).__name__
@@ -1738,7 +1881,10 @@ class Handle:
         if kind is Error:                                   # a null id
             kind = (MemoryError if ": out of memory" in text else FileError if ": cannot write" in text or ": cannot read" in text
                     else ArgumentError)
-        runs = self._context.runs if self._context else None
+        runs, spoilt = (self._context.runs, self._context.spoilt) if self._context else (None, None)
+        if spoilt and kind is UnstableError:
+            head, _, rest = text.partition(": ")
+            text = "%s: your function (%s) raised at step %d of this world; read a checkpoint or build it again; %s" % (head, *spoilt, rest)
         if runs and runs != threading.get_ident() and "called from a function that" in text:
             text = "%s: another thread runs this world; one thread at a time may use a world" % text.partition(":")[0]
         raise kind(text)
@@ -1747,6 +1893,9 @@ class Handle:
         """Raises the exception of a function of yours, or that of a result other than OK."""
         if self._context and self._context.raised is not None:
             error, self._context.raised = self._context.raised, None
+            if self._context.spoils and not self._context.spoilt and isinstance(self, WorldBase) and self._at == self._memory.at:
+                self._context.spoilt = self._context.spoils, _lib.dem_world_steps_get(self._at)
+            self._context.spoils = None
             self._text()                                    # a consequence: read, so that no run quotes it later
             raise error
         if result:
@@ -1756,9 +1905,6 @@ class Handle:
         """Calls a function that takes long. Ctrl-C meanwhile is noted: a progress function then ends the run, and the
         caller gets KeyboardInterrupt."""
         context, thread = self._context, threading.get_ident()
-        if context.runs and context.runs != thread:
-            raise ArgumentError("%s.%s: another thread runs this world; one thread at a time may use a world" % (
-                type(self).__name__, sys._getframe(1).f_code.co_name))
         outer, context.runs, context.stop = context.runs, thread, False
         before = _signal.getsignal(_signal.SIGINT) if thread == threading.main_thread().ident else None
         _RUNNING.add(context)
@@ -1888,6 +2034,9 @@ class Handle:
             pointer = getattr(struct, "_" + name) if isinstance(kind, View) else None
             if pointer:
                 view = getattr(struct, name)
+                if view is None:                            # no numbers
+                    setattr(copy, "_" + name, None)
+                    continue
                 array = (kind.kind*(view.nbytes//ctypes.sizeof(kind.kind))).from_buffer_copy(view.cast("B"))
                 copy._extra.append(array)
                 setattr(copy, "_" + name, ctypes.cast(array, kind.c))
@@ -1968,6 +2117,13 @@ class WorldBase(Handle):
     def _at(self):
         return self._memory.at if self._memory else None
 
+    @property
+    def _c(self):                                   # that of Handle, faster
+        memory, runs = self._memory, self._context.runs
+        if memory is None or runs is not None and runs != _thread():
+            self._refuse()
+        return memory.at
+
     def _create(self, desc):
         self._context = _Context(self)
         desc._functions = dict(desc._functions or {})
@@ -1976,6 +2132,8 @@ class WorldBase(Handle):
             desc.threads = 1                        # Python runs one function at a time
         if "force" in functions:                    # ctypes has no functions that return a struct
             force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
+            if not whole:
+                self._context.names["body_force"] = "force"
 
             def both(body, id, time, sum, torque):
                 made = force(body.position, body.velocity, body.radius, body.mass, time)
@@ -2003,7 +2161,7 @@ class WorldBase(Handle):
             text = (_lib.dem_world_create_error_get(bound) or b"").decode()
             name = text.partition(": ")[2].partition(" ")[0]
             value = getattr(desc, name, None) if name in desc.kinds else None
-            raise ArgumentError(text + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
+            raise ArgumentError(_in_python(text) + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
         self._memory = _Memory(at, self._context)
 
     @classmethod
@@ -2020,7 +2178,7 @@ class WorldBase(Handle):
     def gravity(self):
         """The acceleration of gravity, m/s2. An assignment calls gravity_set."""
         desc = self.desc
-        desc.__dict__["_call"] = "write world.gravity = (x, y, z)"
+        desc.__dict__.update(_call="write world.gravity = (x, y, z)", _assigns=True)
         return desc.gravity
 
     @gravity.setter
@@ -2052,6 +2210,8 @@ class WorldBase(Handle):
     def __repr__(self):
         if self._at is None:
             return "<World, closed>"
+        if self._context.runs not in (None, _thread()) and not self._called():
+            return "<World, run by another thread>"
         shown = self.body_counts
         return "<World at %.6g s: %d bodies, step %d>" % (self.time, shown.present, self.steps)
 
@@ -2219,22 +2379,21 @@ class Rows:
         found = _lib.dem_bodies_get(at)
         count = found.count
         pointer = getattr(found, raw)
-        if not pointer:
+        if not pointer or not count:                        # memory of removed bodies may be left
             return None
         width = found.real_count if axis == "real_count" else axis
         array = (item*(count*(width or 1)))()
-        if count:
-            if "dempy_rows" in _lib.__dict__:
-                result = _lib.dempy_rows(at, offset, (width or 1)*ctypes.sizeof(item), count, ctypes.addressof(array))
-                if result:
-                    raise MemoryError("World.bodies.%s: out of memory" % name)
-            else:
-                rows = sorted(range(count), key=found.slots.__getitem__)
-                width = width or 1
-                for i, row in enumerate(rows):
-                    array[width*i:width*i + width] = pointer[width*row:width*row + width]
+        if "dempy_rows" in _lib.__dict__:
+            result = _lib.dempy_rows(at, offset, (width or 1)*ctypes.sizeof(item), count, ctypes.addressof(array))
+            if result:
+                raise MemoryError("World.bodies.%s: out of memory" % name)
+        else:
+            rows = sorted(range(count), key=found.slots.__getitem__)
+            width = width or 1
+            for i, row in enumerate(rows):
+                array[width*i:width*i + width] = pointer[width*row:width*row + width]
         view = memoryview(array).cast("B")
-        return Array(view.cast(item._type_, (count, width) if axis and count else (count,)).toreadonly())
+        return Array(view.cast(item._type_, (count, width) if axis else (count,)).toreadonly(), name)
 
     def _all(self):
         """The ids of all bodies."""
@@ -2416,6 +2575,19 @@ class Page:
 
     def __init__(self, path, height=560):
         path = os.fsdecode(_text_of(path, "dem.Page: path"))
+        try:
+            height = _number(height, ctypes.c_int)
+        except (TypeError, OverflowError) as error:
+            raise _named(error, "dem.Page: height") from None
+        if height <= 0:
+            raise ArgumentError("dem.Page: height: %d is given, must be > 0" % height)
+        try:
+            with open(path, "rb") as file:
+                found = b'<script type="dem/head">' in file.read(2**20)     # behind the viewer
+        except OSError as error:
+            raise FileError("dem.Page: cannot read %s: %s" % (path, error.strerror)) from None
+        if not found:
+            raise FormatError("dem.Page: %s is not a replay of dem.h; world.replay(path) records one" % path)
         self.path, self.height = path, height
 
     def __repr__(self):

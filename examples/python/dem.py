@@ -240,6 +240,8 @@ class NoFieldError(ArgumentError, AttributeError):
     """There is no field or attribute of this name."""
 # ---- the shared library ------------------------------------------------------------------------
 
+if os.environ.get("DEM_REAL", "") not in ("", "float", "double"):
+    raise LoadError("dem.py: the environment variable DEM_REAL is %r, must be float or double" % os.environ["DEM_REAL"])
 Real = ctypes.c_float if os.environ.get("DEM_REAL") == "float" else ctypes.c_double
 _NAN = float("nan")
 _SOURCE = """
@@ -595,6 +597,11 @@ def _struct_of(kind, value, where):
     """value as a struct of this kind: None is refused."""
     if value is None:
         raise ArgumentTypeError("%s: None is given, a %s is wanted" % (where, kind.__name__))
+    if kind is Selection and (isinstance(value, (Rows, Id)) or isinstance(value, (list, tuple)) and value and isinstance(value[0], Id)):
+        raise ArgumentTypeError("%s: %s, a Selection is wanted: dem.Selection(bodies=[...])" % (where, _given(value)))
+    if kind is Grains and not isinstance(value, (Grains, dict)):
+        raise ArgumentTypeError("%s: %s, a Grains is wanted: of world.grains_read(path) or dem.Grains(positions=..., radii=...); "
+                                "world.spheres adds spheres of arrays" % (where, _given(value)))
     try:
         return kind._made(value)
     except (TypeError, ValueError, OverflowError) as error:
@@ -856,6 +863,17 @@ def _c(kind):
     return ctypes.c_int if isinstance(kind, type) and issubclass(kind, enum.IntEnum) else getattr(kind, "c", kind)
 
 
+def _listed(value):
+    """value.tolist(), also of a memoryview of ctypes, in whose format the byte order is written, which tolist refuses."""
+    try:
+        return value.tolist()
+    except NotImplementedError:
+        view = memoryview(value)
+        if view.format[:-1] != "<>"[sys.byteorder == "big"]:
+            raise TypeError("%s, numbers are wanted" % _given(value)) from None
+        return view.cast("B").cast(view.format[-1], view.shape).tolist() if view.nbytes else []
+
+
 def _items(value, wanted):
     """The elements of a sequence."""
     if isinstance(value, (str, bytes, bytearray, dict, set, frozenset)):
@@ -863,7 +881,7 @@ def _items(value, wanted):
     if hasattr(value, "__array__") and not hasattr(value, "tolist") and not isinstance(value, type):
         value = value.__array__()                           # a table of pandas
     if hasattr(value, "tolist"):
-        value = value.tolist()
+        value = _listed(value)
     try:
         return list(value)
     except TypeError:
@@ -983,7 +1001,7 @@ def _reals(value, kind, width, wanted, count):
     if view and view.c_contiguous and not view.readonly and view.format.lstrip("<@=") == kind._type_:
         return (kind*(view.nbytes//ctypes.sizeof(kind))).from_buffer(view.cast("B"))
     if hasattr(value, "tolist"):
-        value = value.tolist()
+        value = _listed(value)
     numbers = []
     _rows(value, numbers, kind, width, wanted, 0)
     return (kind*len(numbers))(*numbers)
@@ -1001,7 +1019,7 @@ def _rows(value, numbers, kind, width, wanted, depth):
             numbers.append(_number(item, kind))
             continue
         if hasattr(item, "tolist"):
-            item = item.tolist()
+            item = _listed(item)
             if not hasattr(item, "__iter__"):
                 numbers.append(_number(item, kind))
                 continue
@@ -1017,8 +1035,16 @@ def _rows(value, numbers, kind, width, wanted, depth):
             found, wanted, "; leave out number 4 of each row" if width == 3 and found == 4 else ""))
 
 
+def _one_radius(radii, radius, where):
+    """Refuses a radius of all beside the radius of each."""
+    if radii is not None and radius is not None and not (isinstance(radius, (int, float)) and radius == 0):
+        raise ArgumentError("%sradii and radius are given, one of them is wanted: radii for each, or radius for all" % where)
+
+
 def _array_of(value, kind, where, width=1, count=None, null=False):
     """An array that is an argument of a call."""
+    if count == 0 and ".reals_set" in where or width == 0:
+        raise ArgumentError("%s: this world has no numbers on bodies; name them when you make it: dem.World(body_reals=\"...\")" % where)
     try:
         return _array(value, kind, width, count, null)
     except (TypeError, ValueError, OverflowError) as error:
@@ -1026,7 +1052,8 @@ def _array_of(value, kind, where, width=1, count=None, null=False):
 
 
 def _view(pointer, kind, shape, owner, const):
-    """The memory behind a pointer as a memoryview of this shape (of structs: as a C array); None for null."""
+    """The memory behind a pointer as a memoryview of this shape (of structs: as a C array); None for
+    null, and of numbers also if there are none."""
     if not pointer:
         return None
     count = 1
@@ -1036,9 +1063,11 @@ def _view(pointer, kind, shape, owner, const):
         array = _row(kind, count).from_address(ctypes.addressof(pointer.contents)) if count else _row(kind, 0)()
         array.owner, array._call = owner, owner._call
         return array
-    array = (kind*count).from_address(ctypes.addressof(pointer.contents)) if count else (kind*0)()
+    if not count:
+        return None
+    array = (kind*count).from_address(ctypes.addressof(pointer.contents))
     array.owner = owner                                     # the world lives as long as the view
-    view = memoryview(array).cast("B").cast(array._type_._type_, *([list(shape)] if count else []))
+    view = memoryview(array).cast("B").cast(array._type_._type_, list(shape))
     return Array(view.toreadonly() if const else view)
 
 
@@ -1046,10 +1075,11 @@ class Array:
     """Numbers with one or two axes: a view of memory of the world, or a copy. len, indices and loops go by rows; array[i, j],
     array[i], array[1:3], array[:, 2] and array[:, :3] are parts of it. numpy.asarray(array) views it, array.tolist() is a
     list, array.view the memoryview."""
-    __slots__ = ("view",)
+    __slots__ = ("view", "_name")
 
-    def __init__(self, view):
+    def __init__(self, view, name="positions"):
         self.view = view if isinstance(view, memoryview) else memoryview(view)
+        self._name = name                                   # of an array of all bodies, for error messages
 
     def __getattr__(self, name):                            # shape, tolist, nbytes, ...
         if name[:2] == "__":
@@ -1113,8 +1143,9 @@ class Array:
     def __setitem__(self, index, value):
         view = self.view
         if view.readonly:
-            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change, and "
-                                    "world.bodies.positions = array sets all positions")
+            raise ArgumentTypeError("array[...]: this array is read-only; numpy.array(array) is a copy that you may change; %s" % (
+                "world.bodies.%s = array sets all rows" % self._name if self._name in ("positions", "velocities", "spins") else
+                _SETTERS.get(self._name) or "dem.h computes the %s" % self._name))
         part = self[index]
         try:
             if not isinstance(part, Array):
@@ -1127,6 +1158,17 @@ class Array:
                 target[i] = item
         except (TypeError, ValueError) as error:
             raise _named(error, "array[%s]" % (index,)) from None
+
+    def _no_sums(self, other):
+        """Arithmetic, which is that of numpy. An array of numpy on the other side answers itself."""
+        if hasattr(other, "__array__") and not isinstance(other, (Array, Struct)):
+            return NotImplemented
+        raise ArgumentTypeError("Array has no arithmetic; write numpy.asarray(a) - ..., numpy.asarray(a)*2 and so on")
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __pow__ = _no_sums
+
+    def __neg__(self):
+        return self._no_sums(0)
 
     def __iter__(self):
         view = self.view
@@ -1252,6 +1294,8 @@ class Struct(ctypes.Structure):
 
     def _put(self, fields, where=None):
         where = where or type(self).__name__ + "."
+        if "radii" in fields and "radius" in fields and not isinstance(self.kinds.get("radius"), View):
+            _one_radius(fields["radii"], fields["radius"], where)
         for name in fields:
             if name not in self.kinds:
                 raise ArgumentTypeError("%s has no field %r%s" % (type(self).__name__, name, _near(name, self.kinds)))
@@ -1361,7 +1405,7 @@ class Struct(ctypes.Structure):
         base = self
         while base is not None:
             if getattr(base, "_call", None):
-                _changed(self, "%s.%s" % (type(self).__name__, name))
+                _changed(self, "%s.%s" % (type(self).__name__, name), name)
             base = getattr(base, "_b_base_", None)
         if kind is ctypes.c_double and type(value) is float:
             _set(self, name, value)
@@ -1433,6 +1477,17 @@ class Struct(ctypes.Structure):
         except IndexError:
             raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
 
+    def __setitem__(self, index, value):
+        if not isinstance(index, str):
+            try:
+                index = list(self.kinds)[operator.index(index)]
+            except TypeError:
+                raise ArgumentTypeError("%s[...]: %s, the number or the name of a field is wanted" % (
+                    type(self).__name__, _given(index))) from None
+            except IndexError:
+                raise NoSuchError("%s[...]: %s, it has %d fields" % (type(self).__name__, _given(index), len(self))) from None
+        setattr(self, index, value)
+
     def keys(self):
         """The names of the fields: dict(struct) and pandas use them."""
         return list(self.kinds)
@@ -1498,14 +1553,32 @@ def _read(kind):
                                          "__doc__": kind.__doc__})
 
 
-def _changed(base, what):
-    """Refuses to change a part of a struct that a call has returned, or that a function may only read."""
+def _field_at(struct, part):
+    """The name of the field of a struct that contains a part of it."""
+    at = ctypes.addressof(part) - ctypes.addressof(struct)
+    return next((name for (raw, _), name in zip(struct._fields_, struct.kinds) if 0 <= at - getattr(type(struct), raw).offset < getattr(
+        type(struct), raw).size), "")
+
+
+def _world_call(name):
+    """What changes a field of world.desc, as the end of an error message."""
+    if isinstance(getattr(World, name, None), property) and getattr(World, name).fset:
+        return "write world.%s = ..." % name
+    return "call world.%s_set(...)" % name if hasattr(World, name + "_set") else "write dem.World(%s=...) when you make the world" % name
+
+
+def _changed(base, what, field=None):
+    """Refuses to change a part of a struct that a call has returned, or that a function may only read. field: of the struct
+    itself."""
+    first = base
     while base is not None:
         call = getattr(base, "_call", None)
+        if callable(call):
+            call = call(field or _field_at(base, first))
         if call:
             raise FieldError("%s cannot be set; %s" % (what, call) if getattr(base, "plain", None) else
                              "%s: this is a copy, whose change would have no effect; %s" % (what, call))
-        base = getattr(base, "_b_base_", None)
+        base, field = getattr(base, "_b_base_", None), None
 
 
 def _raw(kind):
@@ -1640,6 +1713,36 @@ class Numbers(Struct):
             return NotImplemented                           # an array of numpy answers itself
         return type(self)(*[function(b, a) if swap else function(a, b) for a, b in zip(self, other)])
 
+    def _in_place(self, other, function, sign):
+        """v += w and the like, which change v itself: `force += ...` in a function of yours has an effect on its argument."""
+        name = type(self).__name__
+        if getattr(self._b_base_, "_assigns", None):        # of a property with a setter, which gets the sum
+            return self._with_each(other, function)
+        _changed(self, "%s %s ..." % (name, sign))
+        if hasattr(other, "__len__") and not isinstance(other, (Numbers, Row, tuple, list)):
+            try:
+                other = _items(other, "%d numbers" % len(self))     # an array of numpy would take the place of v
+            except TypeError as error:
+                raise _named(error, "%s %s ..." % (name, sign)) from None
+        made = self._with_each(other, function)
+        if made is NotImplemented:
+            raise ArgumentTypeError("%s %s ...: %s, a number or %d numbers are wanted" % (name, sign, _given(other), len(self)))
+        for i, value in enumerate(made):
+            self[i] = value
+        return self
+
+    def __iadd__(self, other):
+        return self._in_place(other, operator.add, "+=")
+
+    def __isub__(self, other):
+        return self._in_place(other, operator.sub, "-=")
+
+    def __imul__(self, other):
+        return self._in_place(other, operator.mul, "*=")
+
+    def __itruediv__(self, other):
+        return self._in_place(other, operator.truediv, "/=")
+
     def __add__(self, other):
         return self._with_each(other, operator.add)
 
@@ -1676,8 +1779,9 @@ class Numbers(Struct):
         return sum(a*b for a, b in zip(self, type(self)._made(other)))
 
 
-for _name in "add radd sub rsub mul rmul truediv rtruediv abs".split():
+for _name in "add radd sub rsub mul rmul truediv rtruediv abs iadd isub imul itruediv".split():
     setattr(Row, "__%s__" % _name, getattr(Numbers, "__%s__" % _name))
+Row._in_place = Numbers._in_place
 
 
 class Vector(Numbers):
@@ -1848,10 +1952,14 @@ class _Context:
     def __init__(self, world):
         self.raised, self.kept, self.go_on, self.memory, self.vectors, self.reals = None, {}, None, 0, 0, 0
         self.world_of, self.runs, self.ids, self.stop = weakref.ref(world), None, None, False
+        self.spoils, self.spoilt, self.names = None, None, {}   # the function that raised; the same, and the step
 
-    def fail(self, error):
+    def fail(self, error, kind=None):
+        """Notes an exception of a function. kind: of one whose failure spoils the state, such as a law."""
         if self.raised is None:
             self.raised = error
+        if kind and not self.spoils:
+            self.spoils = self.names.get(kind, kind)
 
     def world(self, pointer):
         world = self.world_of()
@@ -1874,10 +1982,10 @@ def _references():
 _ONE, _TWO = _references()
 
 
-def _kept(name):
+def _kept(name, kind):
     """The exception of a function that keeps an argument whose memory dem.h uses again."""
-    return ArgumentError("your function keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
-                         "copy.copy(%s), or the numbers that you need" % (name, name))
+    return ArgumentError("your function (%s) keeps its argument %s, whose memory dem.h uses again after the call; keep a copy: "
+                         "copy.copy(%s), or the numbers that you need" % (kind, name, name))
 
 
 def _beyond(error, kind, **arrays):
@@ -1939,7 +2047,34 @@ def _in_python(text):
     head, colon, rest = text.partition(": ")
     names = {function.replace("dempy_", "dem_"): name[0].lower() + name[1:] if "." in name else "dem." + name
              for function, _, _, name, _ in _FUNCTIONS if not function.startswith(("dempy_rows", "dempy_ids", "dempy_put"))}
-    return head + colon + re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+    for words, in_python in _PHRASES:
+        rest = re.sub(words, in_python, rest)
+    rest = re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
+    return head + colon + re.sub(r"\bDEM_\w+\b", lambda found: _CONSTANTS.get(found.group(0), found.group(0)), rest)
+
+
+def _desc_field(found):
+    """A field of a desc in an error message of dem.h."""
+    name = found.group(1)
+    return "World(%s=...)" % name if name in WorldDesc.kinds else name
+
+
+_PHRASES = (        # of error messages of dem.h, and what is written in Python
+    (r"start from DEM_SIZES and set what this kind needs", "give the fields that this kind needs"),
+    (r"start from DEM_[A-Z]+(?:_DESC)? and set (?=\w+$)", "give only the fields that differ from their defaults, and "),
+    (r"start from DEM_[A-Z]+(?:_DESC)?(?: and set only what differs)?", "give only the fields that differ from their defaults"),
+    (r"start from dem_pair_get and change only what differs", "give only the fields that change"),
+    (r"set it in the desc before the call", "give it as an argument of the call"),
+    (r"set desc\.boundary\[(\d)\] to DEM_BOUNDARY_PERIODIC", r"make axis \1 periodic with World(boundary=...)"),
+    (r"an output of kind DEM_OUTPUT_CALL", "an output of kind 'call', world.output(kind='call', function=...)"),
+    (r"\bdesc\.(\w+) = (\w+)", r"World(\1=\2)"),
+    (r"; set it when the world is created", "; set it when you make the world"),
+    (r"(?<![\w.])desc\.(\w+)(?!\w|\()", _desc_field),
+    (r"\bmust be a DEM_[A-Z]+_ value", "must be one of its words"),
+)
+
+
+_thread = threading.get_ident
 
 
 class Handle:
@@ -1949,12 +2084,20 @@ class Handle:
     @property
     def _c(self):
         """The pointer, for a call."""
-        at = self._at
-        if at is None:
-            frame = sys._getframe(1)                        # of a method, perhaps of an id
-            raise ArgumentError("%s.%s: this %s is closed" % (type(frame.f_locals.get("self", self)).__name__, frame.f_code.co_name,
-                                                             type(self).__name__.lower()))
+        at, context = self._at, self._context
+        if at is None or context and context.runs is not None and context.runs != _thread():
+            self._refuse()
         return at
+
+    def _refuse(self):
+        """Raises if this is closed, or if another thread runs the world. A law may be called in any thread of the run."""
+        frame = sys._getframe(2)                            # of a method, perhaps of an id
+        own = frame.f_locals.get("self", self)
+        name = "%s.%s" % ("World.bodies" if isinstance(own, Rows) else type(own).__name__, frame.f_code.co_name)
+        if self._at is None:
+            raise ArgumentError("%s: this %s is closed" % (name, type(self).__name__.lower()))
+        if not self._called():
+            raise ArgumentError("%s: another thread runs this world; one thread at a time may use a world" % name)
 
     def __setattr__(self, name, value):
         found, kind = getattr(type(self), name, None), type(self).__name__
@@ -1978,7 +2121,10 @@ class Handle:
         if kind is Error:                                   # a null id
             kind = (MemoryError if ": out of memory" in text else FileError if ": cannot write" in text or ": cannot read" in text
                     else ArgumentError)
-        runs = self._context.runs if self._context else None
+        runs, spoilt = (self._context.runs, self._context.spoilt) if self._context else (None, None)
+        if spoilt and kind is UnstableError:
+            head, _, rest = text.partition(": ")
+            text = "%s: your function (%s) raised at step %d of this world; read a checkpoint or build it again; %s" % (head, *spoilt, rest)
         if runs and runs != threading.get_ident() and "called from a function that" in text:
             text = "%s: another thread runs this world; one thread at a time may use a world" % text.partition(":")[0]
         raise kind(text)
@@ -1987,6 +2133,9 @@ class Handle:
         """Raises the exception of a function of yours, or that of a result other than OK."""
         if self._context and self._context.raised is not None:
             error, self._context.raised = self._context.raised, None
+            if self._context.spoils and not self._context.spoilt and isinstance(self, WorldBase) and self._at == self._memory.at:
+                self._context.spoilt = self._context.spoils, _lib.dem_world_steps_get(self._at)
+            self._context.spoils = None
             self._text()                                    # a consequence: read, so that no run quotes it later
             raise error
         if result:
@@ -1996,9 +2145,6 @@ class Handle:
         """Calls a function that takes long. Ctrl-C meanwhile is noted: a progress function then ends the run, and the
         caller gets KeyboardInterrupt."""
         context, thread = self._context, threading.get_ident()
-        if context.runs and context.runs != thread:
-            raise ArgumentError("%s.%s: another thread runs this world; one thread at a time may use a world" % (
-                type(self).__name__, sys._getframe(1).f_code.co_name))
         outer, context.runs, context.stop = context.runs, thread, False
         before = _signal.getsignal(_signal.SIGINT) if thread == threading.main_thread().ident else None
         _RUNNING.add(context)
@@ -2128,6 +2274,9 @@ class Handle:
             pointer = getattr(struct, "_" + name) if isinstance(kind, View) else None
             if pointer:
                 view = getattr(struct, name)
+                if view is None:                            # no numbers
+                    setattr(copy, "_" + name, None)
+                    continue
                 array = (kind.kind*(view.nbytes//ctypes.sizeof(kind.kind))).from_buffer_copy(view.cast("B"))
                 copy._extra.append(array)
                 setattr(copy, "_" + name, ctypes.cast(array, kind.c))
@@ -2208,6 +2357,13 @@ class WorldBase(Handle):
     def _at(self):
         return self._memory.at if self._memory else None
 
+    @property
+    def _c(self):                                   # that of Handle, faster
+        memory, runs = self._memory, self._context.runs
+        if memory is None or runs is not None and runs != _thread():
+            self._refuse()
+        return memory.at
+
     def _create(self, desc):
         self._context = _Context(self)
         desc._functions = dict(desc._functions or {})
@@ -2216,6 +2372,8 @@ class WorldBase(Handle):
             desc.threads = 1                        # Python runs one function at a time
         if "force" in functions:                    # ctypes has no functions that return a struct
             force, whole = desc._functions.pop(("force",)), desc._functions.get(("body_force",))
+            if not whole:
+                self._context.names["body_force"] = "force"
 
             def both(body, id, time, sum, torque):
                 made = force(body.position, body.velocity, body.radius, body.mass, time)
@@ -2243,7 +2401,7 @@ class WorldBase(Handle):
             text = (_lib.dem_world_create_error_get(bound) or b"").decode()
             name = text.partition(": ")[2].partition(" ")[0]
             value = getattr(desc, name, None) if name in desc.kinds else None
-            raise ArgumentError(text + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
+            raise ArgumentError(_in_python(text) + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
         self._memory = _Memory(at, self._context)
 
     @classmethod
@@ -2260,7 +2418,7 @@ class WorldBase(Handle):
     def gravity(self):
         """The acceleration of gravity, m/s2. An assignment calls gravity_set."""
         desc = self.desc
-        desc.__dict__["_call"] = "write world.gravity = (x, y, z)"
+        desc.__dict__.update(_call="write world.gravity = (x, y, z)", _assigns=True)
         return desc.gravity
 
     @gravity.setter
@@ -2292,6 +2450,8 @@ class WorldBase(Handle):
     def __repr__(self):
         if self._at is None:
             return "<World, closed>"
+        if self._context.runs not in (None, _thread()) and not self._called():
+            return "<World, run by another thread>"
         shown = self.body_counts
         return "<World at %.6g s: %d bodies, step %d>" % (self.time, shown.present, self.steps)
 
@@ -2459,22 +2619,21 @@ class Rows:
         found = _lib.dem_bodies_get(at)
         count = found.count
         pointer = getattr(found, raw)
-        if not pointer:
+        if not pointer or not count:                        # memory of removed bodies may be left
             return None
         width = found.real_count if axis == "real_count" else axis
         array = (item*(count*(width or 1)))()
-        if count:
-            if "dempy_rows" in _lib.__dict__:
-                result = _lib.dempy_rows(at, offset, (width or 1)*ctypes.sizeof(item), count, ctypes.addressof(array))
-                if result:
-                    raise MemoryError("World.bodies.%s: out of memory" % name)
-            else:
-                rows = sorted(range(count), key=found.slots.__getitem__)
-                width = width or 1
-                for i, row in enumerate(rows):
-                    array[width*i:width*i + width] = pointer[width*row:width*row + width]
+        if "dempy_rows" in _lib.__dict__:
+            result = _lib.dempy_rows(at, offset, (width or 1)*ctypes.sizeof(item), count, ctypes.addressof(array))
+            if result:
+                raise MemoryError("World.bodies.%s: out of memory" % name)
+        else:
+            rows = sorted(range(count), key=found.slots.__getitem__)
+            width = width or 1
+            for i, row in enumerate(rows):
+                array[width*i:width*i + width] = pointer[width*row:width*row + width]
         view = memoryview(array).cast("B")
-        return Array(view.cast(item._type_, (count, width) if axis and count else (count,)).toreadonly())
+        return Array(view.cast(item._type_, (count, width) if axis else (count,)).toreadonly(), name)
 
     def _all(self):
         """The ids of all bodies."""
@@ -2656,6 +2815,19 @@ class Page:
 
     def __init__(self, path, height=560):
         path = os.fsdecode(_text_of(path, "dem.Page: path"))
+        try:
+            height = _number(height, ctypes.c_int)
+        except (TypeError, OverflowError) as error:
+            raise _named(error, "dem.Page: height") from None
+        if height <= 0:
+            raise ArgumentError("dem.Page: height: %d is given, must be > 0" % height)
+        try:
+            with open(path, "rb") as file:
+                found = b'<script type="dem/head">' in file.read(2**20)     # behind the viewer
+        except OSError as error:
+            raise FileError("dem.Page: cannot read %s: %s" % (path, error.strerror)) from None
+        if not found:
+            raise FormatError("dem.Page: %s is not a replay of dem.h; world.replay(path) records one" % path)
         self.path, self.height = path, height
 
     def __repr__(self):
@@ -3217,7 +3389,7 @@ class Wall(Id):
         """
         pose = Pose()
         self.world._ok(_lib.dem_wall_pose_get(self.world._c, self, pose))
-        self.world._with(pose)
+        self.world._with(pose, 'call wall.motion_set(...), which moves the wall from there on')
         return pose
 
     def remove(self):
@@ -3682,13 +3854,13 @@ def _wrap_dem_law_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'law')
             if _refs(_c) > _ONE and _held(_c):
-                raise _kept('c')
+                raise _kept('c', 'law')
             if _refs(_memory) > _ONE and _held(_memory):
-                raise _kept('memory')
+                raise _kept('memory', 'law')
             if _refs(_force) > _ONE and _held(_force):
-                raise _kept('force')
+                raise _kept('force', 'law')
         except BaseException as error:
-            context.fail(_beyond(error, 'law', memory=memory_type) if type(error) is IndexError else error)
+            context.fail(_beyond(error, 'law', memory=memory_type) if type(error) is IndexError else error, 'law')
             Real.from_address(force).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), LawFn.c)
 
@@ -3707,9 +3879,9 @@ def _wrap_dem_law_rows_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'law_rows')
             if _refs(_rows) > _ONE and _held(_rows):
-                raise _kept('rows')
+                raise _kept('rows', 'law_rows')
         except BaseException as error:
-            context.fail(error)
+            context.fail(error, 'law_rows')
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p)(call), LawRowsFn.c)
 
 
@@ -3729,11 +3901,11 @@ def _wrap_dem_law_rate_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'law_rate')
             if _refs(_c) > _ONE and _held(_c):
-                raise _kept('c')
+                raise _kept('c', 'law_rate')
             if _refs(_rates) > _ONE and _held(_rates):
-                raise _kept('rates')
+                raise _kept('rates', 'law_rate')
         except BaseException as error:
-            context.fail(_beyond(error, 'law_rate', rates=rates_type) if type(error) is IndexError else error)
+            context.fail(_beyond(error, 'law_rate', rates=rates_type) if type(error) is IndexError else error, 'law_rate')
             Real.from_address(rates).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(call), LawRateFn.c)
 
@@ -3788,13 +3960,13 @@ def _wrap_dem_reals_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'reals')
             if _refs(_reals) > _ONE and _held(_reals):
-                raise _kept('reals')
+                raise _kept('reals', 'reals')
             if _refs(_rates) > _ONE and _held(_rates):
-                raise _kept('rates')
+                raise _kept('rates', 'reals')
             if _refs(_body) > _ONE and _held(_body):
-                raise _kept('body')
+                raise _kept('body', 'reals')
         except BaseException as error:
-            context.fail(_beyond(error, 'reals', reals=reals_type, rates=rates_type) if type(error) is IndexError else error)
+            context.fail(_beyond(error, 'reals', reals=reals_type, rates=rates_type) if type(error) is IndexError else error, 'reals')
             Real.from_address(reals).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, Body, ctypes.c_double, Real, ctypes.c_void_p)(call), RealsFn.c)
 
@@ -3811,7 +3983,7 @@ def _wrap_dem_growth_fn(function, context, struct):
             _body = body_of(body)
             result = _real_from(function(_body, id, time), 'growth')
             if _refs(_body) > _ONE and _held(_body):
-                raise _kept('body')
+                raise _kept('body', 'growth')
             return result
         except BaseException as error:
             context.fail(error)
@@ -3839,13 +4011,13 @@ def _wrap_dem_body_force_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'body_force')
             if _refs(_body) > _ONE and _held(_body):
-                raise _kept('body')
+                raise _kept('body', 'body_force')
             if _refs(_force) > _ONE and _held(_force):
-                raise _kept('force')
+                raise _kept('force', 'body_force')
             if _refs(_torque) > _ONE and _held(_torque):
-                raise _kept('torque')
+                raise _kept('torque', 'body_force')
         except BaseException as error:
-            context.fail(error)
+            context.fail(error, 'body_force')
             Real.from_address(force).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, Body, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), BodyForceFn.c)
 
@@ -4282,9 +4454,9 @@ def _wrap_dem_motion_fn(function, context, struct):
             if result is not None:
                 raise _returned(result, 'motion')
             if _refs(_pose) > _ONE and _held(_pose):
-                raise _kept('pose')
+                raise _kept('pose', 'motion')
         except BaseException as error:
-            context.fail(error)
+            context.fail(error, 'motion')
             Real.from_address(pose).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p)(call), MotionFn.c)
 
@@ -4994,7 +5166,7 @@ def _wrap_dem_event_fn(function, context, struct):
             _event = event_of(event)
             function(_event)
             if _refs(_event) > _ONE and _held(_event):
-                raise _kept('event')
+                raise _kept('event', 'event')
         except BaseException as error:
             context.fail(error)
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(call), EventFn.c)
@@ -5316,7 +5488,7 @@ def _wrap_dem_replay_desc_number_fn(function, context, struct):
 
     def call(world, body, user):
         try:
-            result = _real_from(function(context.world(world), body), 'replay_desc_number')
+            result = _real_from(function(context.world(world), body), 'number')
             return result
         except BaseException as error:
             context.fail(error)
@@ -5376,11 +5548,11 @@ def _wrap_dem_output_desc_values(function, context, struct):
             _values = values_type.from_address(values) if values else values_type()
             result = function(context.world(world), _values)
             if result is not None:
-                raise _returned(result, 'output_desc_values')
+                raise _returned(result, 'values')
             if _refs(_values) > _ONE and _held(_values):
-                raise _kept('values')
+                raise _kept('values', 'values')
         except BaseException as error:
-            context.fail(_beyond(error, 'output_desc_values', values=values_type) if type(error) is IndexError else error)
+            context.fail(_beyond(error, 'values', values=values_type) if type(error) is IndexError else error)
             Real.from_address(values).value = _NAN
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), OutputDescValues.c)
 
@@ -5567,9 +5739,9 @@ def _wrap_dem_contact_fn(function, context, struct):
             _memory = memory_type.from_address(memory) if memory else memory_type()
             function(_contact, _memory)
             if _refs(_contact) > _ONE and _held(_contact):
-                raise _kept('contact')
+                raise _kept('contact', 'contact')
             if _refs(_memory) > _ONE and _held(_memory):
-                raise _kept('memory')
+                raise _kept('memory', 'contact')
         except BaseException as error:
             context.fail(_beyond(error, 'contact', memory=memory_type) if type(error) is IndexError else error)
     return ctypes.cast(ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(call), ContactFn.c)
@@ -5712,7 +5884,7 @@ class World(WorldBase):
         """
         found = _lib.dem_world_desc_get(self._c)
         self._ok(0)
-        return self._with(found)
+        return self._with(found, _world_call)
 
     def material(self, *, density=0, young=0, poisson=0, restitution=0, friction=0, friction_static=0,
             rolling_friction=0, stiffness=0, stiffness_ratio=0, stiffness_unloading=0, stiffness_adhesion=0):
@@ -5817,6 +5989,7 @@ class World(WorldBase):
         """Adds count spheres, all or none. positions: count x 3, m. velocities: count x 3, m/s, or None for rest. radii:
         count, m, or None if all have `radius`.
         """
+        _one_radius(radii, radius, 'World.spheres: ')
         positions = _array_of(positions, Real, 'World.spheres: positions', 3)
         count = len(positions)//3
         velocities = _array_of(velocities, Real, 'World.spheres: velocities', 3, count, True)
@@ -6003,8 +6176,7 @@ class World(WorldBase):
         world.bodies_memory. Values must be finite. Laws use them from the next step on. It is an error if the world
         has no names of such numbers.
         """
-        reals = _array_of(reals, Real, 'World.bodies_reals_set: reals', max(self._context.reals, 1),
-            self.bodies.count)
+        reals = _array_of(reals, Real, 'World.bodies_reals_set: reals', self._context.reals, self.bodies.count)
         self._ok(_lib.dem_bodies_reals_set(self._c, reals))
 
     def shape_ellipsoid(self, semi_axes):
@@ -6363,8 +6535,8 @@ class World(WorldBase):
         The step counts (World.steps) when it is complete: the next call completes it as its first step, here or in a
         world that has read a checkpoint written meanwhile. The bits are those of a run without the interruption.
         """
-        self._ok(self._run(_lib.dem_world_step, self._c, steps) if self._context.kept or self._context.runs else
-            _lib.dem_world_step(self._c, steps))
+        self._ok(self._run(_lib.dem_world_step, self._c, steps) if type(steps) is not int or steps != 1 or
+            self._context.kept or self._context.runs else _lib.dem_world_step(self._c, steps))
 
     def run(self, seconds, progress=None):
         """Advances the world by `seconds` of simulated time (>= 0), to the nearest step. Consecutive calls add up:
@@ -7118,8 +7290,8 @@ class Slabs(SlabsBase):
         """Advances all slabs by `steps` time steps (>= 0). Errors as for World.step; StoppedError also if the transport
         has failed.
         """
-        self._ok(self._run(_lib.dem_slabs_step, self._c, steps) if self._context.kept or self._context.runs else
-            _lib.dem_slabs_step(self._c, steps))
+        self._ok(self._run(_lib.dem_slabs_step, self._c, steps) if type(steps) is not int or steps != 1 or
+            self._context.kept or self._context.runs else _lib.dem_slabs_step(self._c, steps))
 
     def collect(self, world):
         """Copies the state of all slabs into a world of the same scene, in every process: grains, contact history,
@@ -7337,6 +7509,117 @@ def trials_print(trials, out=None):
     """Prints the trials as a table, and the advice."""
     trials = _struct_of(Trials, trials, 'dem.trials_print: trials')
     return Handle()._print(_lib.dem_trials_print, out, trials)
+
+
+_CONSTANTS = {      # constants of enums, as error messages of Python show them
+    'DEM_BOUNDARY_OPEN': "'open'",
+    'DEM_BOUNDARY_OUTFLOW': "'outflow'",
+    'DEM_BOUNDARY_PERIODIC': "'periodic'",
+    'DEM_CLUSTER_CONTACTS_MERGED': "'merged'",
+    'DEM_CLUSTER_CONTACTS_SEPARATE': "'separate'",
+    'DEM_CLUSTER_GIVEN': "'given'",
+    'DEM_CLUSTER_SUM': "'sum'",
+    'DEM_CLUSTER_UNION': "'union'",
+    'DEM_CONE_CONVEX': "'convex'",
+    'DEM_CONE_COULOMB': "'coulomb'",
+    'DEM_CONVENTION_MILL': "'mill'",
+    'DEM_CONVENTION_STANDARD': "'standard'",
+    'DEM_EDGE_FRACTION': "'fraction'",
+    'DEM_EDGE_RESOLVED': "'resolved'",
+    'DEM_EFFECT_ACTIVE': "'active'",
+    'DEM_EFFECT_IDLE': "'idle'",
+    'DEM_EFFECT_OFF': "'off'",
+    'DEM_EVENT_BEGIN': "'begin'",
+    'DEM_EVENT_END': "'end'",
+    'DEM_EVENT_OPEN': "'open'",
+    'DEM_INTEGRATOR_FORWARD_EULER': "'forward_euler'",
+    'DEM_INTEGRATOR_LEAPFROG': "'leapfrog'",
+    'DEM_INTEGRATOR_POSITION_VERLET': "'position_verlet'",
+    'DEM_INTEGRATOR_SYMPLECTIC_EULER': "'symplectic_euler'",
+    'DEM_INTEGRATOR_VELOCITY_VERLET': "'velocity_verlet'",
+    'DEM_JOINT_NONE': "'none'",
+    'DEM_JOINT_POINT': "'point'",
+    'DEM_JOINT_REVOLUTE': "'revolute'",
+    'DEM_LOAD_ELASTIC': "'elastic'",
+    'DEM_LOAD_MAGNITUDE': "'magnitude'",
+    'DEM_LOAD_REPULSIVE': "'repulsive'",
+    'DEM_MOTION_FIXED': "'fixed'",
+    'DEM_MOTION_OSCILLATING': "'oscillating'",
+    'DEM_MOTION_ROTATING': "'rotating'",
+    'DEM_MOTION_SERVO': "'servo'",
+    'DEM_MOTION_TABLE': "'table'",
+    'DEM_MOTION_TRANSLATING': "'translating'",
+    'DEM_MOTION_USER': "'user'",
+    'DEM_MOTOR_NONE': "'none'",
+    'DEM_MOTOR_SPEED': "'speed'",
+    'DEM_MOTOR_TORQUE': "'torque'",
+    'DEM_NORMAL_HERTZ': "'hertz'",
+    'DEM_NORMAL_HYSTERETIC': "'hysteretic'",
+    'DEM_NORMAL_LINEAR': "'linear'",
+    'DEM_OUTPUT_BODIES_CSV': "'bodies_csv'",
+    'DEM_OUTPUT_CALL': "'call'",
+    'DEM_OUTPUT_CHECKPOINT': "'checkpoint'",
+    'DEM_OUTPUT_CONTACTS': "'contacts'",
+    'DEM_OUTPUT_CONTACTS_CSV': "'contacts_csv'",
+    'DEM_OUTPUT_CSV': "'csv'",
+    'DEM_OUTPUT_FIELD_CSV': "'field_csv'",
+    'DEM_OUTPUT_SURFACES': "'surfaces'",
+    'DEM_OUTPUT_VTP': "'vtp'",
+    'DEM_OUTPUT_WALLS': "'walls'",
+    'DEM_OUTPUT_XYZ': "'xyz'",
+    'DEM_OVERLAP_CHORD': "'chord'",
+    'DEM_OVERLAP_CONSERVATIVE': "'conservative'",
+    'DEM_OVERLAP_NORMAL': "'normal'",
+    'DEM_RESPONSE_IMPULSES': "'impulses'",
+    'DEM_RESPONSE_SPRINGS': "'springs'",
+    'DEM_ROLLING_AUTO': "'auto'",
+    'DEM_ROLLING_CONSTANT': "'constant'",
+    'DEM_ROLLING_EPSD': "'epsd'",
+    'DEM_ROLLING_NONE': "'none'",
+    'DEM_ROLLING_STEP': "'step'",
+    'DEM_ROTATION_FINCHAM': "'fincham'",
+    'DEM_ROTATION_NO_SQUISH': "'no_squish'",
+    'DEM_ROTATION_SPIRAL': "'spiral'",
+    'DEM_SEARCH_ALL_PAIRS': "'all_pairs'",
+    'DEM_SEARCH_AUTO': "'auto'",
+    'DEM_SEARCH_BINS': "'bins'",
+    'DEM_SEARCH_GRID': "'grid'",
+    'DEM_SEARCH_HIERARCHICAL': "'hierarchical'",
+    'DEM_SEARCH_LINKED_LIST': "'linked_list'",
+    'DEM_SEVERITY_ERROR': "'error'",
+    'DEM_SEVERITY_NOTE': "'note'",
+    'DEM_SEVERITY_WARNING': "'warning'",
+    'DEM_SIEVE_BARS': "'bars'",
+    'DEM_SIEVE_NONE': "'none'",
+    'DEM_SIEVE_REDUCED': "'reduced'",
+    'DEM_SIEVE_ROUND': "'round'",
+    'DEM_SIEVE_SLOTS': "'slots'",
+    'DEM_SIEVE_SQUARE': "'square'",
+    'DEM_SIEVE_WIRES': "'wires'",
+    'DEM_SIZES_EXPONENTIAL': "'exponential'",
+    'DEM_SIZES_LOGNORMAL': "'lognormal'",
+    'DEM_SIZES_NORMAL': "'normal'",
+    'DEM_SIZES_SIEVE_CURVE': "'sieve_curve'",
+    'DEM_SIZES_UNIFORM': "'uniform'",
+    'DEM_SIZES_WEIBULL': "'weibull'",
+    'DEM_SLIDER_PARALLEL': "'parallel'",
+    'DEM_SLIDER_REMAINDER': "'remainder'",
+    'DEM_SLIDER_SPRING': "'spring'",
+    'DEM_SOLVER_APGD': "'apgd'",
+    'DEM_SOLVER_GAUSS_SEIDEL': "'gauss_seidel'",
+    'DEM_SOLVER_JACOBI': "'jacobi'",
+    'DEM_SOLVER_SPECTRAL': "'spectral'",
+    'DEM_TANGENT_AUTO': "'auto'",
+    'DEM_TANGENT_MINDLIN': "'mindlin'",
+    'DEM_TANGENT_MINDLIN_RESCALED': "'mindlin_rescaled'",
+    'DEM_TANGENT_NONE': "'none'",
+    'DEM_TANGENT_SPRING': "'spring'",
+    'DEM_TANGENT_STEP': "'step'",
+    'DEM_TANGENT_VISCOUS': "'viscous'",
+    'DEM_TENSION_ALLOWED': "'allowed'",
+    'DEM_TENSION_CLIPPED': "'clipped'",
+    'DEM_TENSION_COMPENSATED': "'compensated'",
+}
 
 
 _FUNCTIONS = [

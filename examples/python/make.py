@@ -413,6 +413,7 @@ class Writer:
         names = [v[0] for v in values]
         prefix = os.path.commonprefix(names)
         prefix = prefix[:prefix.rindex("_") + 1]
+        self.constants.update((value, repr(value[len(prefix):].lower())) for value in names if name != "dem_result")
         if name == "dem_result":
             prefix = "DEM_"
         self.write("\n\nclass %s(enum.IntEnum):" % camel(name))
@@ -471,7 +472,7 @@ class Writer:
         for name_, made in kept:
             self.write("            _%s = %s" % (name_, made))
         call = "function(%s)" % ", ".join(given)
-        about = re.sub("^dem_|_fn$", "", f.name)
+        about = re.sub("^dem_(replay_desc_|output_desc_)?|_fn$", "", f.name)
         if result == "None":
             if f.name in ("dem_contact_fn", "dem_event_fn", "dem_allocator_free_fn"):
                 self.write("            %s" % call)
@@ -488,12 +489,13 @@ class Writer:
                 call, " or context.stop" if f.name == "dem_progress_fn" else ""))
         for name_, _ in kept:
             self.write("            if _refs(_%s) > _ONE and _held(_%s):" % (name_, name_))
-            self.write("                raise _kept(%r)" % name_)
+            self.write("                raise _kept(%r, %r)" % (name_, about))
         if result not in ("None", "ctypes.c_void_p"):
             self.write("            return result")
         self.write("        except BaseException as error:")
-        self.write("            context.fail(%s)" % ("_beyond(error, %r, %s) if type(error) is IndexError else error" % (about, ", ".join(
-            "%s=%s_type" % (a.name, a.name) for a in pointers)) if pointers else "error"))
+        self.write("            context.fail(" + ("_beyond(error, %r, %s) if type(error) is IndexError else error" % (about, ", ".join(
+            "%s=%s_type" % (a.name, a.name) for a in pointers)) if pointers else "error") + (
+            ", %r)" % about if f.name in SPOILING else ")"))
         if poison:
             self.write("            Real.from_address(%s).value = _NAN" % poison[0])
         if result in ("ctypes.c_double", "Real"):
@@ -658,7 +660,7 @@ class Writer:
                     rows = "%s.bodies.count" % world
                     pre.append("%s = _array_of(%s, %s, %s, %s)" % (
                         a.name, a.name, item, at(a), "1, %s._context.reals" % world if f.name != "dem_bodies_reals_set" else
-                        "max(%s._context.reals, 1), %s" % (world, rows)))
+                        "%s._context.reals, %s" % (world, rows)))
                 elif first:
                     pre.append("%s = _array_of(%s, %s, %s, %d)" % (a.name, source, item, at(a), width))
                     pre.append("count = len(%s)%s" % (a.name, "" if width == 1 else "//%d" % width))
@@ -770,6 +772,8 @@ class Writer:
                 note = m.doc
             if base:
                 docs.insert(0, "Fields that are not given stay as they are.")
+        if {"radii", "radius"} <= {p for p, _ in params}:
+            pre.insert(0, "_one_radius(radii, radius, %r)" % (where + ": "))
         # -- parameters with a default are last --
         if any(default is None and params[i - 1][1] is not None for i, (_, default) in enumerate(params) if i):
             params = [(p, None) for p, _ in params]
@@ -828,6 +832,8 @@ class Writer:
     def setter(self, f, owner):
         """What changes the values that a function returns, as an argument of _with."""
         other = next((g for g in self.h.functions if g.name == f.name[:-4] + "_set" and self.owner(g) == owner), None)
+        if f.name == "dem_wall_pose_get":
+            return ", 'call wall.motion_set(...), which moves the wall from there on'"
         if not other:
             return ""
         return ", 'call %s.%s(...), which changes the fields that it is given'" % (camel(owner), self.short(other, owner))
@@ -975,8 +981,8 @@ class Writer:
         if f.type == "dem_result" and (re.search(r"_(step|run|run_to|settle)$", f.name)):
             head, inner = call.split("(", 1)
             run = "%s._ok(%s._run(%s, %s)" % (world, world, head, inner)
-            if f.name.endswith("_step"):            # without functions of yours there is nothing to interrupt
-                return ["%s._ok(%s._run(%s, %s if %s._context.kept or %s._context.runs else %s)" % (
+            if f.name.endswith("_step"):            # one step without functions of yours: nothing to interrupt
+                return ["%s._ok(%s._run(%s, %s if type(steps) is not int or steps != 1 or %s._context.kept or %s._context.runs else %s)" % (
                     world, world, head, inner, world, world, call)]
             return [run] + (["return " + ", ".join(name for name, _ in outs)] if outs else [])
         if f.type == "dem_result":
@@ -1004,7 +1010,8 @@ class Writer:
             kind = HANDLES[f.type]
             return ["return %s(%s._pointer(%s), %s%s)" % (kind, world, call, world, ", path" if "path" in dict(params) else "")]
         if f.type in h.structs:
-            return ["found = " + call, "%s._ok(0)" % world, "return %s._with(found)" % world]
+            return ["found = " + call, "%s._ok(0)" % world, "return %s._with(found%s)" % (
+                world, ", _world_call" if f.name == "dem_world_desc_get" else "")]
         if f.type == "int" and outs:
             o, size = outs[0]
             kinds = {a.name: a.type for a in f.arguments}
@@ -1050,7 +1057,7 @@ class Writer:
 
     def file(self):
         h = self.h
-        self.names, self.parts = {}, {}
+        self.names, self.parts, self.constants = {}, {}, {}
         self.write(HEAD)
         for name, value, note in h.constants:
             self.write("%s = %s%s" % (name[4:], value, "    # " + note if note else ""))
@@ -1135,6 +1142,10 @@ class Writer:
         for f in h.functions:
             if self.owner(f) is None and not f.name.endswith("_make") and f.name not in skip:
                 self.method(f, None)
+        self.write("\n\n_CONSTANTS = {      # constants of enums, as error messages of Python show them")
+        for value in sorted(self.constants):
+            self.write("    %r: %r," % (value, self.constants[value]))
+        self.write("}")
         self.write("\n\n_FUNCTIONS = [")
         for f in [create] + h.functions:
             if f not in inline and f.inline:
@@ -1161,6 +1172,7 @@ class Writer:
         return "\n".join(self.out) + "\n"
 
 
+SPOILING = {"dem_%s_fn" % name for name in "law law_rows law_rate reals body_force motion".split()}  # state is lost if they fail
 BASES = {"dem_vec3": "Vector", "dem_quat": "Numbers"}
 # functions that dem.py adds to the library; loaded where they are there
 EXTRA = [("dempy_rows", "ctypes.c_int", "ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_int, ctypes.c_void_p"),
@@ -1284,6 +1296,7 @@ class Struct(ctypes.Structure):
     def __iter__(self) -> Iterator[Any]: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: Any) -> Any: ...
+    def __setitem__(self, index: Any, value: Any) -> None: ...
     def keys(self) -> list[str]: ...
     def to_dict(self) -> dict[str, Any]: ...
     @classmethod
@@ -1298,6 +1311,10 @@ class Numbers(Struct):
     def __mul__(self, other: Any) -> Any: ...
     def __rmul__(self, other: Any) -> Any: ...
     def __truediv__(self, other: Any) -> Any: ...
+    def __iadd__(self, other: Any) -> Any: ...
+    def __isub__(self, other: Any) -> Any: ...
+    def __imul__(self, other: Any) -> Any: ...
+    def __itruediv__(self, other: Any) -> Any: ...
     def __neg__(self) -> Any: ...
     def __abs__(self) -> float: ...
     def dot(self, other: Any) -> float: ...
@@ -1360,6 +1377,10 @@ class Row(ctypes.Array[Any]):
     def __mul__(self, other: Any) -> Any: ...
     def __rmul__(self, other: Any) -> Any: ...
     def __truediv__(self, other: Any) -> Any: ...
+    def __iadd__(self, other: Any) -> Any: ...
+    def __isub__(self, other: Any) -> Any: ...
+    def __imul__(self, other: Any) -> Any: ...
+    def __itruediv__(self, other: Any) -> Any: ...
 
 class Page:
     def __init__(self, path: str | os.PathLike[str], height: int = ...) -> None: ...
