@@ -68,6 +68,7 @@ static dem_body_state hit(int body, int kind, int impulses, int both, int other)
     int i;
     desc.response = impulses ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
     desc.dt = impulses ? DEM_R(1e-4) : DEM_R(2e-6);
+    if (impulses && fine) desc.tolerance = DEM_R(1e-9);      /* m/s: what is compared is not the solver's error */
     desc.allow_large_dt = 1;
     if (kind == PERIODIC) {
         desc.boundary[0] = desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
