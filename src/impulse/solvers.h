@@ -236,18 +236,19 @@ static int demi_solved_open(const dem_world *w, const demi_solved *o) {
     if (w->desc.tolerance > 0) return o->worst > (double)w->desc.tolerance;
     return o->rms > enough || o->worst > 30*enough;
 }
-/* Adds s->step times the last direction to the impulses of a run. This plus the change of the last
-   sweep is the next direction. */
+/* Adds s->step times the last direction, unless that is 0, to the impulses of a run. This plus the
+   change of the last sweep is the next direction. */
 static void demi_seidel_on(dem_world *w, int index) {
     demi_solver *s = &w->solver;
     const int shaped = w->bodies.shaped > 0;
     int i, end;
     for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
         demi_impulse *c = s->contacts + i;
-        dem_vec3 *way = demi_vector_at(s, DEMI_WAY, i);
-        const dem_vec3 by = demi_scale(*way, s->step);
-        const dem_real push = demi_dot(by, c->normal);
+        dem_vec3 *way = demi_vector_at(s, DEMI_WAY, i), by = demi_scale(*way, s->step);
+        dem_real push;
+        if (!(s->step > 0)) { *way = *demi_vector_at(s, DEMI_BY, i); continue; }
         *way = demi_add(by, *demi_vector_at(s, DEMI_BY, i));
+        push = demi_dot(by, c->normal);
         c->push += push;
         c->slip = demi_add(c->slip, demi_sub(by, demi_scale(c->normal, push)));
         demi_impulse_apply(s, c, by, shaped);
