@@ -9163,9 +9163,8 @@ static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 
     int f;
     for (f = 0; p->kind == DEMI_POLYHEDRON && f < p->shape->faces; f++) {
         const dem_vec3 n = dem_quat_rotate(p->q, demi_face_normal(p->shape, f));
-        const dem_real off = demi_dot(n, gap) - demi_part_support(q, demi_scale(n, -1)) -
-            (dem_real)p->shape->hull[4*f + 3]*p->scale;
-        most = DEMI_MAX(most, off);
+        const dem_real off = demi_dot(n, gap) - (dem_real)p->shape->hull[4*f + 3]*p->scale;
+        if (off > most) most = DEMI_MAX(most, off - demi_part_support(q, demi_scale(n, -1)));
     }
     return most;
 }
@@ -19974,9 +19973,10 @@ static int demi_lead_known(const demi_lead *at, int count, const demi_lead *w) {
     return 0;
 }
 /* True if the two bodies are apart by more than tiny, m. n: on entry a direction to start with, on
-   return the unit normal from a to b. GJK. */
-static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double tiny, demi_d3 *n,
-                             demi_simplex *s) {
+   return the unit normal from a to b, or some normal of a slab wider than `range` (m) between them.
+   GJK. */
+static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double tiny, double range,
+                             demi_d3 *n, demi_simplex *s) {
     demi_d3 v = *n, had_v;
     double far = 1e300;
     demi_simplex had;
@@ -19988,6 +19988,7 @@ static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double ti
         double now;
         demi_lead *w = &s->at[s->count];
         *w = demi_lead_along(a, b, demi_d3_scale(v, -1));
+        if (demi_d3_dot(v, w->x) > range*demi_d3_length(v)) break;
         if (turn && (far - demi_d3_dot(v, w->x) <= 1e-14*far ||
                      demi_lead_known(s->at, s->count, w))) break;
         had = *s;
@@ -20156,12 +20157,13 @@ static double demi_solid_radius(const demi_solid *s) {
         far2 = DEMI_MAX(far2, demi_d3_square(demi_d3_sub(s->corner[i], s->centre)));
     return sqrt(far2);
 }
-/* Returns the gap between the two, m; negative: their penetration depth. n: on entry a direction to
-   start with, or 0; on return the unit normal from a to b. s: the corners that define it. */
-static double demi_solids_gap(const demi_solid *a, const demi_solid *b, demi_d3 *n,
+/* Returns the gap between the two, m; negative: their penetration depth; above `range` any number
+   from there to the gap. n: on entry a direction to start with, or 0; on return the unit normal
+   from a to b. s: the corners that define it. */
+static double demi_solids_gap(const demi_solid *a, const demi_solid *b, double range, demi_d3 *n,
                               demi_simplex *s) {
     const double ra = demi_solid_radius(a), rb = demi_solid_radius(b), size = ra + rb;
-    if (demi_solids_apart(a, b, DEMI_MAX(1e-7*DEMI_MIN(ra, rb), 1e-14*size), n, s)) {
+    if (demi_solids_apart(a, b, DEMI_MAX(1e-7*DEMI_MIN(ra, rb), 1e-14*size), range, n, s)) {
         const double gap = demi_solids_slab(a, b, *n);
         if (gap > 0) return gap;
     }
@@ -20180,7 +20182,8 @@ static double demi_spot_matters(double off, double gap, double touch, double far
 }
 /* Picks up to four of many points in a plane across n: the deepest, and then by demi_spot_matters
    one by its distance from the deepest, and on either side of the line through both one by its
-   distance from that line; if one side has none, the deepest of the others. Returns their number.
+   distance from that line; if one side has none, one by its distance from the nearest of the three.
+   Returns their number.
    The range of the search changes nothing while four points touch. */
 static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
     demi_d3 across;
@@ -20210,10 +20213,14 @@ static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_
         if (matters > side[k]) { side[k] = matters; best[k] = i; }
     }
     for (k = 0; k < 2; k++) if (best[k] >= 0) out[picked++] = best[k];
-    for (i = 0, k = -1; i < count && picked == 3; i++)
-        if (i != out[0] && i != out[1] && i != out[2] && (k < 0 || gap[i] < gap[k])) k = i;
-    if (k >= 0 && picked == 3) out[picked++] = k;
-    return picked;
+    for (i = 0, most = 0; i < count && picked == 3; i++) {
+        double off = far, matters;
+        for (k = 0; k < 3; k++)
+            off = DEMI_MIN(off, demi_d3_length(demi_d3_cross(n, demi_d3_sub(x[i], x[out[k]]))));
+        matters = demi_spot_matters(off, gap[i], touch, far);
+        if (matters > most) { most = matters; out[3] = i; }
+    }
+    return picked + (picked == 3 && most > 0);
 }
 /* Keeps those of `count` points whose gaps are below range, at most four. Returns their number. */
 static int demi_spots_take(demi_spots *out, demi_d3 *x, double *gap, int count, double range,
@@ -20291,7 +20298,7 @@ static int demi_solids_manifold(const demi_solid *a, const demi_solid *b, int fa
 static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
                              demi_d3 guess, demi_simplex *s, demi_spots *out) {
     demi_d3 n = guess;
-    const double all = demi_solids_gap(a, b, &n, s);
+    const double all = demi_solids_gap(a, b, range, &n, s);
     out->count = 0;
     out->normal = n;
     return all < range ? demi_solids_manifold(a, b, facet, range, all, n, s, out) : 0;
@@ -21391,7 +21398,7 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
     int i, k, owns = 0, has[3] = {0, 0, 0};
     if (!demi_facet_in_reach(wall, element, v->x, s, gaps->range) ||
         !demi_facet_solid(wall, element, v->x, reach, &f)) return;
-    gap = demi_solids_gap(s, &f, &n, &tells);
+    gap = demi_solids_gap(s, &f, gaps->range, &n, &tells);
     if (!(gap < gaps->range)) return;
     along = demi_d3_dot(n, f.face[0].slope);
     if (fabs(along) >= DEMI_FLUSH && demi_facet_points(start, v, element, s, &f, along > 0, gaps))
@@ -22462,7 +22469,7 @@ static void demi_line_gaps(const demi_solid *s, demi_d3 a, demi_d3 b, double thi
     line.corner[0] = a;
     line.corner[1] = b;
     line.centre = demi_d3_scale(demi_d3_add(a, b), 0.5);
-    gap = demi_solids_gap(s, &line, &n, &tells) - thick;
+    gap = demi_solids_gap(s, &line, gaps->range + thick, &n, &tells) - thick;
     if (!(gap < gaps->range) || -demi_d3_dot(n, out) > 1e-9 || -demi_d3_dot(n, down) > 1e-9)
         return;
     f = demi_solid_facing(s, n, &on);
@@ -22965,7 +22972,7 @@ static int demi_flush_how(const dem_world *w, const demi_flush_row *b, const dem
                 !demi_flush_piece_of(w, o, j, way, &q)) continue;
             demi_solid_of(&p, p.centre, &s);
             demi_solid_of(&q, q.centre, &t);
-            if (demi_solids_apart(&s, &t, tiny, &n, &simplex) &&
+            if (demi_solids_apart(&s, &t, tiny, 1e300, &n, &simplex) &&
                 demi_solids_slab(&s, &t, n) > tiny) continue;
             how = demi_solids_faced(&s, &t, tiny);
         }

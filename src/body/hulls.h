@@ -593,9 +593,8 @@ static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 
     int f;
     for (f = 0; p->kind == DEMI_POLYHEDRON && f < p->shape->faces; f++) {
         const dem_vec3 n = dem_quat_rotate(p->q, demi_face_normal(p->shape, f));
-        const dem_real off = demi_dot(n, gap) - demi_part_support(q, demi_scale(n, -1)) -
-            (dem_real)p->shape->hull[4*f + 3]*p->scale;
-        most = DEMI_MAX(most, off);
+        const dem_real off = demi_dot(n, gap) - (dem_real)p->shape->hull[4*f + 3]*p->scale;
+        if (off > most) most = DEMI_MAX(most, off - demi_part_support(q, demi_scale(n, -1)));
     }
     return most;
 }

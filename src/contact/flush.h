@@ -117,7 +117,7 @@ static int demi_flush_how(const dem_world *w, const demi_flush_row *b, const dem
                 !demi_flush_piece_of(w, o, j, way, &q)) continue;
             demi_solid_of(&p, p.centre, &s);
             demi_solid_of(&q, q.centre, &t);
-            if (demi_solids_apart(&s, &t, tiny, &n, &simplex) &&
+            if (demi_solids_apart(&s, &t, tiny, 1e300, &n, &simplex) &&
                 demi_solids_slab(&s, &t, n) > tiny) continue;
             how = demi_solids_faced(&s, &t, tiny);
         }

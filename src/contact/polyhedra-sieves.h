@@ -203,7 +203,7 @@ static void demi_line_gaps(const demi_solid *s, demi_d3 a, demi_d3 b, double thi
     line.corner[0] = a;
     line.corner[1] = b;
     line.centre = demi_d3_scale(demi_d3_add(a, b), 0.5);
-    gap = demi_solids_gap(s, &line, &n, &tells) - thick;
+    gap = demi_solids_gap(s, &line, gaps->range + thick, &n, &tells) - thick;
     if (!(gap < gaps->range) || -demi_d3_dot(n, out) > 1e-9 || -demi_d3_dot(n, down) > 1e-9)
         return;
     f = demi_solid_facing(s, n, &on);

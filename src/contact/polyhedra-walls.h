@@ -450,7 +450,7 @@ static void demi_element_gaps(const demi_view *start, const demi_view *v, int el
     int i, k, owns = 0, has[3] = {0, 0, 0};
     if (!demi_facet_in_reach(wall, element, v->x, s, gaps->range) ||
         !demi_facet_solid(wall, element, v->x, reach, &f)) return;
-    gap = demi_solids_gap(s, &f, &n, &tells);
+    gap = demi_solids_gap(s, &f, gaps->range, &n, &tells);
     if (!(gap < gaps->range)) return;
     along = demi_d3_dot(n, f.face[0].slope);
     if (fabs(along) >= DEMI_FLUSH && demi_facet_points(start, v, element, s, &f, along > 0, gaps))

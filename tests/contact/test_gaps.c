@@ -47,7 +47,7 @@ int main(int argc, char **argv) {
             solid_from(&a, &p);
             solid_from(&b, &q);
             since = seconds();
-            gap = demi_solids_gap(&p, &q, &n, &tells);
+            gap = demi_solids_gap(&p, &q, 1e300, &n, &tells);
             time[1] += seconds() - since;
             since = seconds();
             v = convex_mpr(&one, &two);
@@ -111,8 +111,8 @@ int main(int argc, char **argv) {
             for (i = 0; i < 4; i++) {
                 demi_d3 n = demi_d(0, 0, 0);
                 demi_simplex tells;
-                gap[i] = i & 1 ? demi_solids_gap(&q[i/2], &p[i/2], &n, &tells)
-                    : demi_solids_gap(&p[i/2], &q[i/2], &n, &tells);
+                gap[i] = i & 1 ? demi_solids_gap(&q[i/2], &p[i/2], 1e300, &n, &tells)
+                    : demi_solids_gap(&p[i/2], &q[i/2], 1e300, &n, &tells);
                 worst = fmax(worst, fabs(gap[i] - gap[0])/size);
             }
             touching += gap[0] < 0;
@@ -120,6 +120,37 @@ int main(int argc, char **argv) {
         if (getenv("GAPS_NUMBERS")) printf("%ld pairs, %ld touching: worst %.3g of the pair's size\n", pairs, touching, worst);
         CHECK(touching > pairs/2);
         CHECK(worst < 1e-9);
+    }
+
+    TEST("a gap that is sought up to a range only is the same below it, and is not below it otherwise") {
+        static convex_solid a, b;
+        static demi_solid p, q;
+        uint64_t state = 57;
+        long k, below = 0, beyond = 0, ended = 0, wrong = 0;
+        for (k = 0; k < 2000; k++) {
+            demi_d3 n = demi_d(0, 0, 0), other = demi_d(0, 0, 0);
+            demi_simplex tells;
+            convex_body one, two;
+            double gap, up_to, range, tiny;
+            convex_pair(&a, &b, &state);
+            solid_from(&a, &p);
+            solid_from(&b, &q);
+            gap = demi_solids_gap(&p, &q, 1e300, &n, &tells);
+            range = k & 1 ? 2*fabs(gap)*convex_random(&state) : 0;
+            up_to = demi_solids_gap(&p, &q, range, &other, &tells);
+            below += gap < range;
+            beyond += !(gap < range);
+            ended += up_to < gap;
+            one = convex_view(&a);
+            two = convex_view(&b);
+            tiny = 1e-7*fmin(convex_radius(&one), convex_radius(&two));     /* below, EPA finds some gap that is less */
+            wrong += gap < range - tiny ? up_to < gap || up_to > gap
+                : up_to < fmin(range, gap) - tiny || up_to > gap + tiny;
+        }
+        CHECK(below > 200);
+        CHECK(beyond > 200);
+        CHECK(ended > 100);                     /* these were spared most of the search */
+        CHECK_EQ(wrong, 0);
     }
 
     TEST("of five points of which none is on one side, the nearest stays, however many are farther away") {
@@ -130,6 +161,16 @@ int main(int argc, char **argv) {
         for (i = 0; i < count; i++) has |= 1 << out[i];
         CHECK_EQ(count, 4);
         CHECK_EQ(has & 7, 7);                   /* they touch first */
+    }
+    TEST("of a card that is tilted about one edge the far corners are among its four points, and not those beside the edge") {
+        const demi_d3 x[6] = {demi_d(0, 0, 0), demi_d(1, 0, 0), demi_d(0, 0.01, 0), demi_d(1, 0.01, 0), demi_d(0, 1, 0),
+                              demi_d(1, 1, 0)};
+        const double gap[6] = {0, 0, 0.02, 0.02, 0.04, 0.041};
+        int out[4], i, count, has = 0;
+        count = demi_spots_pick(x, gap, 6, demi_d(0, 0, 1), out);
+        for (i = 0; i < count; i++) has |= 1 << out[i];
+        CHECK_EQ(count, 4);
+        CHECK_EQ(has, 1 | 2 | 16 | 32);
     }
 
     return test_end();

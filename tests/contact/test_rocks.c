@@ -133,8 +133,8 @@ int main(int argc, char **argv) {
             int i, f, pass;
             demi_solid_of(&p, at(0, 0, 0), &a);
             demi_solid_of(&q, scene_at(&random, 0.03, -0.015, 0.03, -0.015, 0.02, -0.01), &b);
-            gap = demi_solids_gap(&a, &b, &n, &tells);
-            other = demi_solids_gap(&b, &a, &turned, &tells);
+            gap = demi_solids_gap(&a, &b, 1e300, &n, &tells);
+            other = demi_solids_gap(&b, &a, 1e300, &turned, &tells);
             CHECK_NEAR(gap, other, 1e-12);
             CHECK_NEAR(demi_d3_length(demi_d3_add(n, turned)), 0, gap > 1e-6 ? 1e-6 : 2);
             for (pass = 0; pass < 2; pass++)    /* no face's plane keeps them farther apart than the gap is */
@@ -149,7 +149,7 @@ int main(int argc, char **argv) {
                 for (i = 0; i < b.corners; i++) b.corner[i] = demi_d3_plus(b.corner[i], 1e-9 - gap, n);
                 b.centre = demi_d3_plus(b.centre, 1e-9 - gap, n);
                 turned = demi_d(0, 0, 0);
-                CHECK_NEAR(demi_solids_gap(&a, &b, &turned, &tells), 1e-9, 1e-11);
+                CHECK_NEAR(demi_solids_gap(&a, &b, 1e300, &turned, &tells), 1e-9, 1e-11);
             }
         }
         CHECK(overlaps > 50 && overlaps < 350);
@@ -214,7 +214,7 @@ int main(int argc, char **argv) {
         for (k = 0; k <= 4; k++)
             for (corner = 0; corner < 2; corner++) {
                 dem_material m;
-                dem_world *w = rigid(0, 0.25*k, 0, &m);
+                dem_world *w = rigid_to(1e-12, 0, 0.25*k, 0, &m);
                 const dem_quat q = corner ? dem_quat_about(at(1, -0.7, 0), DEM_R(0.8)) : straight;
                 const dem_vec3 x = at(0.003, 0.001, 0.021);
                 dem_quat turned;
