@@ -1779,9 +1779,10 @@ typedef struct dem_world_desc {
     /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
        (docs/impulses.md) for either value of integrator that it accepts, 0 and
        DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
-       solved. If it is 0, dem.h takes three times the distance that the fastest body moves in a
-       step, at most the largest radius R and at least 0.1 R. On a periodic axis of length P it is
-       at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R.
+       solved. If it is 0, dem.h takes three times the distance that the fastest point of a body or
+       wall moves in a step, at most the largest radius R and at least 0.01 R. On a periodic axis of
+       length P it is at most the larger of 0.1 R and 0.8 (P/2 - 2 R - skin), with skin 0 unless you
+       set it.
        The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
@@ -1789,7 +1790,8 @@ typedef struct dem_world_desc {
     int sweeps;                    /* most sweeps over all contacts in a step; 0 means 200 */
     /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when
        the root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the
-       largest change is below 30 times that. */
+       largest change is below 30 times that. Where polyhedra lie on faces, the root mean square
+       must also fall to a tenth of that and to half of its first value, or to 3e-4 of that. */
     dem_real tolerance;
     int cold_start;                /* 1 begins with zero impulses, not those of the last step */
     /* 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.
@@ -4685,6 +4687,7 @@ typedef struct demi_domain {
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
     int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
     int kept_walls;                /* those with walls */
+    int faced;                     /* impulses: 1 if a contact of polyhedra has several points */
     int kept_same;                 /* where demi_kept_same starts its search */
     int coefs;                     /* rows in use of w->coefs */
     int touching_first;            /* begin of its segment of w->touching */
@@ -4692,9 +4695,10 @@ typedef struct demi_domain {
                                       groups, 4 walls, 8 pruned list, 16 persistent contacts */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
     double acceleration2;          /* max |a|^2 */
-    double turn;                   /* m/s, max change of |spin| times moment_arm in the step */
-    double turn_speed;             /* m/s, max |spin| times moment_arm */
-    double turn_rate;              /* rad/s, max |spin| of those that are not spheres */
+    double turn;                   /* square of the max change of |spin| times moment_arm in the
+                                      step, (m/s)^2 */
+    double turn_speed, turn_rate;  /* squares of max |spin| times moment_arm, (m/s)^2, and of max
+                                      |spin| of those that are not spheres, (rad/s)^2 */
     double energy[DEMI_ENERGIES], cell[DEMI_CELL_SUMS];
     uint64_t met[DEMI_MATERIALS];  /* as in demi_booked, since the last rebuild */
 } demi_domain;
@@ -5086,6 +5090,10 @@ typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are vali
                                       built; in the last step */
     double creep;                  /* m: bound on the approach of two bodies by these changes */
     double reach;                  /* m: largest gap at which a law is called; 0: only in contact */
+    double pace, walls_pace;       /* m/s: fastest point of a body; with impulses, fastest point of
+                                      a wall, 1e300: there is no bound */
+    double seen, cover;            /* m, at most `reach`: with impulses, gap below which this step
+                                      finds contacts; that for which the pruned list is made */
 } demi_margin;
 typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int tangent, rolling;          /* laws in force */
@@ -5288,8 +5296,8 @@ typedef struct demi_solver {
     struct demi_beside *beside;
     struct demi_twist *twists;     /* null: no rolling or spinning friction */
     dem_vec3 *arms;                /* x 2, m; null: all bodies are spheres */
-    struct demi_mover *movers;     /* one per body and per persistent contact; twice that for some
-                                      solvers */
+    struct demi_mover *movers;     /* one per body and per persistent contact; then copies of them,
+                                      for some solvers */
     dem_real *tensors;             /* x 6: inverse inertia in the world's frame; null: all bodies
                                       are spheres */
     dem_real *lifts;               /* x 4, m/s: velocities that remove overlaps, see
@@ -5306,8 +5314,11 @@ typedef struct demi_solver {
     double *blocks;                /* x 36: pivots of the factor, and entries below them */
     int node_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; range of the colour being swept; its first run */
+    int mover_count;               /* of one array of solver bodies */
+    int sweep;                     /* sweeps before this one */
     int limited;                   /* contacts at their friction limit in the last unsolved step */
     int twisted;                   /* 1: there is rolling or spinning friction */
+    int faced;                     /* 1: some body lies on a face */
     int begins[65];                /* first contact of each colour */
     int meeting_first[DEMI_DOMAINS], meeting_count[DEMI_DOMAINS];
     dem_real dt, step;             /* s; step length of some solvers */
@@ -5603,6 +5614,13 @@ DEM_INLINE void demi_work_book(dem_world *w, int what, double work) {
 /* Called for bodies that get a speed, m/s, between two steps. The next step may rely on it. */
 DEM_INLINE void demi_speed_book(dem_world *w, double speed) {
     w->booked.speed_max = DEMI_MAX(w->booked.speed_max, speed);
+    w->margin.pace = DEMI_MAX(w->margin.pace, speed);
+}
+/* Bound of the speed at which the rotation of body i moves its surface along the normal of a
+   contact, m/s; 0 for a sphere. */
+DEM_INLINE dem_real demi_turn_speed(const dem_world *w, int i) {
+    if (!w->bodies.shaped || !w->bodies.shape[i]) return 0;
+    return demi_length(demi_at(w->bodies.spin + 4*i))*w->bodies.moment[4*i + 3];
 }
 
 /* Steps that are complete. One that ran out of memory after its move does not count yet; functions
@@ -5686,10 +5704,27 @@ DEM_INLINE dem_vec3 demi_near_level(const dem_world *w, size_t at, dem_vec3 way)
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;
 }
+/* Returns three times the distance, m, that the fastest points of a body and of a wall together
+   move in a step, with the speed that gravity adds. */
+static double demi_three_steps(const dem_world *w) {
+    const double dt = (double)w->desc.dt, kick = (double)demi_length(w->desc.gravity)*dt;
+    return 3*(w->margin.pace + w->margin.walls_pace + kick)*dt;
+}
+/* Returns the gap, m, below which contacts of any two bodies are found in this step. With impulses
+   it is at least a hundredth of the largest radius. */
+static double demi_foreseen(const dem_world *w) {
+    const double least = 0.01*(double)w->effects.radius_max;
+    if (!demi_reach_free(w)) return w->margin.reach;
+    return DEMI_MIN(w->margin.reach, DEMI_MAX(demi_three_steps(w), least));
+}
+/* Gap, m, of a pair of the pruned list that makes no use of its span. */
+DEM_INLINE dem_real demi_near_margin(const dem_world *w) {
+    return (dem_real)(w->margin.cover + w->margin.slack);
+}
 /* Returns the gap, m, below which the law is called. `radii`: sum of both radii; with a wall, the
    radius of the body. 0: the law is called only in contact. */
 DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
-    if (demi_reach_free(w)) return (dem_real)w->margin.reach;
+    if (demi_reach_free(w)) return (dem_real)w->margin.seen;
     return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
 }
 /* Returns the energy `what`, J, of the coming step, summed over all domains. */
@@ -6218,6 +6253,7 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(margin.skin_auto, 'd', DEMI_FROM | DEMI_DEALT), DEMI_N(margin.creep, 'd', DEMI_FROM),
     DEMI_N(margin.span, 'd', DEMI_FROM | DEMI_TO_SLAB), DEMI_N(margin.change, 'd', DEMI_FROM),
     DEMI_N(margin.slack, 'd', DEMI_FROM | DEMI_TO_SLAB),
+    DEMI_N(margin.pace, 'd', DEMI_FROM), DEMI_N(margin.cover, 'd', DEMI_FROM),
     DEMI_N(margin.last_change, 'd', DEMI_FROM), DEMI_N(wall_fastest, 'd', DEMI_TO_SLAB),
     DEMI_N(effects.radius_min, 'r', DEMI_FROM), DEMI_N(effects.radius_max, 'r', DEMI_FROM),
     DEMI_N(bodies.balance, 'u', DEMI_TO_SLAB | DEMI_TO_HEAD),
@@ -16221,13 +16257,15 @@ static void demi_kept_move(dem_world *w, const int *first) {
    spheres come first, and >>members tests the others. The list is rebuilt from the candidates after
    the time margin.span, or earlier if accelerations may have used up the slack. It takes contact
    histories from the previous pruned list or, after a search, from demi_filed. Results do not
-   depend on how long a list lasts, because one zero more or less does not change a sum. Proof that
-   no contact is missed: let v be the relative speed of two bodies when the list is built. A step
+   depend on how long a list lasts, because one zero more or less does not change a sum; one
+   exception: whether a sheet lies between two bodies is decided when a list is built. Proof that no
+   contact is missed: let v be the relative speed of two bodies when the list is built. A step
    changes a velocity by at most last_change, that is dt times the largest acceleration of all
    bodies. After n steps the relative velocity has changed by at most 2 change, where change is the
    sum of last_change. So the two have approached by at most v t + creep, where creep is the sum
-   over steps of 2 dt change. A pair that is not in the list had a gap larger than v span + slack.
-   As long as age < span and creep < slack, the pair does not touch.
+   over steps of 2 dt change. A pair that is not in the list had a gap larger than v span + slack +
+   cover. As long as age < span and creep < slack, its gap is larger than cover, the range of
+   contacts.
    --------------------------------------------------------------------------------------------- */
 
 /* --- species: classes of equal spheres, and the coefficients of every two species. A scene has few
@@ -16409,7 +16447,7 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
     const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
-    const dem_real margin = (dem_real)(w->margin.reach + w->margin.slack);
+    const dem_real margin = demi_near_margin(w);
     const dem_real span = (dem_real)w->margin.span;
     const int room = w->near.stride - DEMI_LANES;
     const int32_t *shape = w->bodies.shape;
@@ -16431,19 +16469,12 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
 }
 /* Upper bound, m/s, on the approach speed of the surfaces of two bodies, rotation included. */
 static dem_real demi_approach(const dem_world *w, int a, int b) {
-    const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
-    dem_real speed = demi_length(demi_sub(demi_at(w->bodies.vel + 4*b),
-                                          demi_at(w->bodies.vel + 4*a)));
-    if (fa) speed += demi_length(demi_at(w->bodies.spin + 4*a))*fa->moment_arm*
-                     demi_scale_of(w, a, fa);
-    if (fb) speed += demi_length(demi_at(w->bodies.spin + 4*b))*fb->moment_arm*
-                     demi_scale_of(w, b, fb);
-    return speed;
+    return demi_length(demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a))) +
+        demi_turn_speed(w, a) + demi_turn_speed(w, b);
 }
 /* Gap, m, below which two bodies, or parts of them, may touch during the life of the list. */
 static dem_real demi_near_cut(const dem_world *w, int a, int b) {
-    return (dem_real)(w->margin.reach + w->margin.slack) +
-        (dem_real)w->margin.span*demi_approach(w, a, b);
+    return demi_near_margin(w) + (dem_real)w->margin.span*demi_approach(w, a, b);
 }
 /* Returns the spheres of a body, rows of centre (relative to the body's) and radius, m, and their
    number; null if the body has other parts. */
@@ -16848,11 +16879,12 @@ static void demi_quiet_mark(dem_world *w) {
 /* Chooses span and slack of the next pruned list. The cost is estimated from counts, not from time,
    so that every run makes the same choice: 1 for a force, and for building the list 0.15 for each
    candidate and 1 for each of its pairs (bench/ measures both). With a longer span the list
-   contains more pairs that do not touch, and is built less often. */
+   contains more pairs that do not touch, and is built less often. Those within the range of the law
+   are in it whatever the span. */
 static void demi_near_choose(dem_world *w) {
     const double r = (double)(w->effects.radius_min > 0 ? w->effects.radius_min : 1),
         dt = (double)w->clock.dt;
-    double near = 0, touching = 0, candidates = 0, longer = 1, span = w->margin.span;
+    double near = 0, touching = 0, candidates = 0, longer = 1, span = w->margin.span, beyond;
     int d;
     if (span < dt) span = dt;                   /* the first list */
     if (w->margin.age > 0) {
@@ -16864,8 +16896,10 @@ static void demi_near_choose(dem_world *w) {
             candidates += domain->own + domain->cross;
         }
         if (w->effects.unlike) candidates *= 6;   /* support points, some gaps */
+        beyond = w->margin.slack + span*w->margin.pace;
+        beyond = (near - touching)*(w->margin.cover > 0 ? beyond/(w->margin.cover + beyond) : 1);
         longer = sqrt((0.15*candidates + near)*dt/
-                      (w->margin.age*DEMI_MAX(near - touching, 0.01*w->bodies.count)));
+                      (w->margin.age*DEMI_MAX(beyond, 0.01*w->bodies.count)));
         longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
         span = DEMI_MIN(DEMI_MAX(w->margin.age*longer, 2*dt), 1000*dt);
         /* creep grows with the square of time */
@@ -16881,9 +16915,13 @@ static void demi_near_pass(dem_world *w, double change) {
     w->margin.creep += 2*w->margin.change*(double)w->clock.dt + w->cell.squeeze;
     w->margin.age += (double)w->clock.dt;
 }
+/* True if span or slack of the pruned list are used up. */
+static int demi_near_worn(const dem_world *w) {
+    return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
+}
 /* True if the pruned list must be rebuilt. */
 static int demi_near_due(const dem_world *w) {
-    return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
+    return demi_near_worn(w) || (demi_reach_free(w) && demi_foreseen(w) > w->margin.cover);
 }
 /* Allocates the contacts of two bodies that >>members may merge. Returns 0 if memory runs out. */
 static int demi_merging_reserve(dem_world *w) {
@@ -16902,6 +16940,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     w->near = w->near_last;
     w->near_last = swap;
     w->near_fresh = fresh;
+    w->margin.cover = DEMI_MIN(w->margin.reach, 1.5*demi_foreseen(w));
     if (!demi_quiet_reserve(w, w->bodies.count)) {
         w->near_last = w->near;
         w->near = swap;
@@ -16982,12 +17021,13 @@ static demi_rubbing demi_pairs_rub(const dem_world *w) {
     return rub;
 }
 /* Returns the largest gap, m, at which a law is called, if the largest radius is `radius`. With
-   impulses contacts are found ahead of time: three steps of the fastest body, at most one radius,
-   and less in a short period, where a fast partner is found later. */
+   impulses contacts are found ahead of time: at most one radius and three steps of the points that
+   are fastest now, and less in a short period, where a fast partner is found later; at least 0.1
+   radii, since lists last while bodies become faster (demi_foreseen: the gap of one step). */
 static double demi_reach_of(const dem_world *w, double radius) {
     if (demi_reach_free(w)) {
         const demi_periods p = demi_periods_of(w);
-        double seen = DEMI_MIN(3*w->booked.speed_max*(double)w->desc.dt, radius);
+        double seen = DEMI_MIN(demi_three_steps(w), radius);
         int k;
         for (k = 0; k < 3; k++) {
             const double skin = DEMI_MAX((double)w->desc.skin, 0);
@@ -17014,6 +17054,15 @@ static double demi_fastest(const dem_world *w) {
             most = DEMI_MAX(most, (double)demi_dot(demi_at(w->bodies.vel + 4*i),
                                                    demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
+}
+/* Books the speeds of bodies, which may be new since the last step. */
+static void demi_pace_book(dem_world *w) {
+    const double fastest = demi_fastest(w);
+    dem_real turn = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) turn = DEMI_MAX(turn, demi_turn_speed(w, i));
+    demi_speed_book(w, fastest);
+    w->margin.pace = DEMI_MAX(w->margin.pace, fastest + (double)turn);
 }
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
@@ -17047,8 +17096,7 @@ static void demi_effects(dem_world *w) {
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count && !(w->effects.clustered && w->bodies.shaped);
-    if (demi_reach_free(w))                     /* velocities may be new since the last step */
-        demi_speed_book(w, demi_fastest(w));
+    if (demi_reach_free(w)) demi_pace_book(w);
     w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
@@ -17200,7 +17248,7 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
                                                 demi_at(w->bodies.pos + 4*a)));
     const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
     return demi_length(x) < demi_radius(w, a) + demi_radius(w, b) +
-           (dem_real)(w->margin.reach + w->margin.slack) + (dem_real)w->margin.span*demi_length(u);
+           demi_near_margin(w) + (dem_real)w->margin.span*demi_length(u);
 }
 /* Inserts body i, just appended, into the list. found: all bodies whose gap to it may be below the
    skin, ascending. Returns 0 if there is no room; then a rebuild is needed. It does not allocate:
@@ -24672,6 +24720,7 @@ static int demi_kept_widen(dem_world *w) {
 /* Finds the persistent contacts of all work groups. Returns 0 if memory ran out. */
 static int demi_touch(dem_world *w) {
     int d, again;
+    w->margin.seen = demi_foreseen(w);
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
     if (!w->wall_count && !w->bodies.shaped && !w->effects.clustered) return 1;
     if ((!w->facets_valid && !demi_surfaces_make(w)) ||
@@ -31631,7 +31680,7 @@ static double demi_fastest_next(const dem_world *w) {
    upper bound, m/s. */
 static dem_result demi_speed_check(dem_world *w, double speed) {
     const int foreseen = demi_response_is(w, DEMI_FORESEEN);
-    const double seen = foreseen ? w->margin.reach/2 : 0;
+    const double seen = foreseen ? demi_foreseen(w)/2 : 0;
     const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
     double most = 0;
     char who[80] = "a body";
@@ -31799,21 +31848,26 @@ static void demi_some_back(dem_world *w, int index) {
 }
 /* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
    is its pose a whole step ahead, midway between two detections; surface velocities are those of
-   that time. Bodies that were just set are not ahead (demi_move_midpoint). */
+   that time, and so is the speed of the fastest wall. Bodies that were just set are not ahead
+   (demi_move_midpoint). */
 static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
     demi_parallel(w, w->threads.now, runs, 0, demi_some_ahead);
+    w->margin.walls_pace = 0;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
-        dem_pose pose;
+        dem_pose half, pose;
+        double pace;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
-        if (demi_pose_sane(&pose)) wall->pose = pose;
+        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &half);
         demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
-        if (demi_pose_sane(&pose)) wall->ahead = pose;
+        if (demi_pose_sane(&pose)) wall->pose = wall->ahead = pose;
+        pace = demi_wall_pace(w, i);
+        w->margin.walls_pace = pace < 0 ? 1e300 : DEMI_MAX(w->margin.walls_pace, pace);
+        wall->pose = demi_pose_sane(&half) ? half : wall->mid;
     }
 }
 /* Moves bodies and walls back to the positions before demi_ahead. */
@@ -34166,6 +34220,7 @@ static dem_result demi_step_move(dem_world *w) {
     if (sqrt(turn_rate)*(double)w->clock.dt > (w->desc.allow_large_dt ? 2 : 1))
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->booked.speed_max = sqrt(speed2);
+    w->margin.pace = w->booked.speed_max + sqrt(turn_speed);
     w->margin.step_gone =
         (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt +
         w->cell.squeeze/2;
@@ -34273,7 +34328,7 @@ static dem_result demi_member_move(dem_world *w) {
    for the next list it may not be. */
 static dem_result demi_member_near(dem_world *w) {
     if (!w->stage.near_stale && !w->stage.near_chosen && !demi_near_due(w)) return DEM_OK;
-    if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
+    if (!w->stage.near_chosen && demi_near_worn(w)) demi_near_choose(w);
     w->stage.near_chosen = 1;
     if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
     w->stage.near_chosen = 0;
@@ -39421,7 +39476,7 @@ DEM_API dem_result dem_impacts_csv_write(dem_world *w, const char *path) {
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 27 };
+enum { DEMI_CHECKPOINT_VERSION = 28 };
 
 /* --- the state, visited in the order in which it is checked --- */
 
@@ -42967,7 +43022,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         demi_print(out, "effects    contacts are impulses, %s; gaps up to %.3g m are "
                 "included\n           last step: %d sweeps left %.3g m/s; %llu steps did not reach "
                 "their tolerance", w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
-                w->margin.reach, w->booked.sweeps, w->booked.residual,
+                demi_foreseen(w), w->booked.sweeps, w->booked.residual,
                 (unsigned long long)w->booked.unsolved);
         if (w->solver.limited)
             demi_print(out, "; in the last of them %d contacts were at their friction limit",

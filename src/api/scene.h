@@ -112,9 +112,10 @@ typedef struct dem_world_desc {
     /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null. Its steps are of second order
        (docs/impulses.md) for either value of integrator that it accepts, 0 and
        DEM_INTEGRATOR_SYMPLECTIC_EULER. law_range (m) is then the gap below which contacts are
-       solved. If it is 0, dem.h takes three times the distance that the fastest body moves in a
-       step, at most the largest radius R and at least 0.1 R. On a periodic axis of length P it is
-       at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R.
+       solved. If it is 0, dem.h takes three times the distance that the fastest point of a body or
+       wall moves in a step, at most the largest radius R and at least 0.01 R. On a periodic axis of
+       length P it is at most the larger of 0.1 R and 0.8 (P/2 - 2 R - skin), with skin 0 unless you
+       set it.
        The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
@@ -122,7 +123,8 @@ typedef struct dem_world_desc {
     int sweeps;                    /* most sweeps over all contacts in a step; 0 means 200 */
     /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when
        the root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the
-       largest change is below 30 times that. */
+       largest change is below 30 times that. Where polyhedra lie on faces, the root mean square
+       must also fall to a tenth of that and to half of its first value, or to 3e-4 of that. */
     dem_real tolerance;
     int cold_start;                /* 1 begins with zero impulses, not those of the last step */
     /* 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.

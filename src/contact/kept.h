@@ -810,6 +810,7 @@ static int demi_kept_widen(dem_world *w) {
 /* Finds the persistent contacts of all work groups. Returns 0 if memory ran out. */
 static int demi_touch(dem_world *w) {
     int d, again;
+    w->margin.seen = demi_foreseen(w);
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
     if (!w->wall_count && !w->bodies.shaped && !w->effects.clustered) return 1;
     if ((!w->facets_valid && !demi_surfaces_make(w)) ||

@@ -278,6 +278,7 @@ typedef struct demi_domain {
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
     int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
     int kept_walls;                /* those with walls */
+    int faced;                     /* impulses: 1 if a contact of polyhedra has several points */
     int kept_same;                 /* where demi_kept_same starts its search */
     int coefs;                     /* rows in use of w->coefs */
     int touching_first;            /* begin of its segment of w->touching */
@@ -285,9 +286,10 @@ typedef struct demi_domain {
                                       groups, 4 walls, 8 pruned list, 16 persistent contacts */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
     double acceleration2;          /* max |a|^2 */
-    double turn;                   /* m/s, max change of |spin| times moment_arm in the step */
-    double turn_speed;             /* m/s, max |spin| times moment_arm */
-    double turn_rate;              /* rad/s, max |spin| of those that are not spheres */
+    double turn;                   /* square of the max change of |spin| times moment_arm in the
+                                      step, (m/s)^2 */
+    double turn_speed, turn_rate;  /* squares of max |spin| times moment_arm, (m/s)^2, and of max
+                                      |spin| of those that are not spheres, (rad/s)^2 */
     double energy[DEMI_ENERGIES], cell[DEMI_CELL_SUMS];
     uint64_t met[DEMI_MATERIALS];  /* as in demi_booked, since the last rebuild */
 } demi_domain;

@@ -163,6 +163,7 @@ static const demi_field_row demi_number_rows[] = {
     DEMI_N(margin.skin_auto, 'd', DEMI_FROM | DEMI_DEALT), DEMI_N(margin.creep, 'd', DEMI_FROM),
     DEMI_N(margin.span, 'd', DEMI_FROM | DEMI_TO_SLAB), DEMI_N(margin.change, 'd', DEMI_FROM),
     DEMI_N(margin.slack, 'd', DEMI_FROM | DEMI_TO_SLAB),
+    DEMI_N(margin.pace, 'd', DEMI_FROM), DEMI_N(margin.cover, 'd', DEMI_FROM),
     DEMI_N(margin.last_change, 'd', DEMI_FROM), DEMI_N(wall_fastest, 'd', DEMI_TO_SLAB),
     DEMI_N(effects.radius_min, 'r', DEMI_FROM), DEMI_N(effects.radius_max, 'r', DEMI_FROM),
     DEMI_N(bodies.balance, 'u', DEMI_TO_SLAB | DEMI_TO_HEAD),

@@ -62,6 +62,10 @@ typedef struct demi_margin {       /* >>rebuild, >>near: how long lists are vali
                                       built; in the last step */
     double creep;                  /* m: bound on the approach of two bodies by these changes */
     double reach;                  /* m: largest gap at which a law is called; 0: only in contact */
+    double pace, walls_pace;       /* m/s: fastest point of a body; with impulses, fastest point of
+                                      a wall, 1e300: there is no bound */
+    double seen, cover;            /* m, at most `reach`: with impulses, gap below which this step
+                                      finds contacts; that for which the pruned list is made */
 } demi_margin;
 typedef struct demi_in_force {     /* >>rebuild: determined at each rebuild */
     int tangent, rolling;          /* laws in force */
@@ -264,8 +268,8 @@ typedef struct demi_solver {
     struct demi_beside *beside;
     struct demi_twist *twists;     /* null: no rolling or spinning friction */
     dem_vec3 *arms;                /* x 2, m; null: all bodies are spheres */
-    struct demi_mover *movers;     /* one per body and per persistent contact; twice that for some
-                                      solvers */
+    struct demi_mover *movers;     /* one per body and per persistent contact; then copies of them,
+                                      for some solvers */
     dem_real *tensors;             /* x 6: inverse inertia in the world's frame; null: all bodies
                                       are spheres */
     dem_real *lifts;               /* x 4, m/s: velocities that remove overlaps, see
@@ -282,8 +286,11 @@ typedef struct demi_solver {
     double *blocks;                /* x 36: pivots of the factor, and entries below them */
     int node_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; range of the colour being swept; its first run */
+    int mover_count;               /* of one array of solver bodies */
+    int sweep;                     /* sweeps before this one */
     int limited;                   /* contacts at their friction limit in the last unsolved step */
     int twisted;                   /* 1: there is rolling or spinning friction */
+    int faced;                     /* 1: some body lies on a face */
     int begins[65];                /* first contact of each colour */
     int meeting_first[DEMI_DOMAINS], meeting_count[DEMI_DOMAINS];
     dem_real dt, step;             /* s; step length of some solvers */
@@ -579,6 +586,13 @@ DEM_INLINE void demi_work_book(dem_world *w, int what, double work) {
 /* Called for bodies that get a speed, m/s, between two steps. The next step may rely on it. */
 DEM_INLINE void demi_speed_book(dem_world *w, double speed) {
     w->booked.speed_max = DEMI_MAX(w->booked.speed_max, speed);
+    w->margin.pace = DEMI_MAX(w->margin.pace, speed);
+}
+/* Bound of the speed at which the rotation of body i moves its surface along the normal of a
+   contact, m/s; 0 for a sphere. */
+DEM_INLINE dem_real demi_turn_speed(const dem_world *w, int i) {
+    if (!w->bodies.shaped || !w->bodies.shape[i]) return 0;
+    return demi_length(demi_at(w->bodies.spin + 4*i))*w->bodies.moment[4*i + 3];
 }
 
 /* Steps that are complete. One that ran out of memory after its move does not count yet; functions
@@ -662,10 +676,27 @@ DEM_INLINE dem_vec3 demi_near_level(const dem_world *w, size_t at, dem_vec3 way)
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;
 }
+/* Returns three times the distance, m, that the fastest points of a body and of a wall together
+   move in a step, with the speed that gravity adds. */
+static double demi_three_steps(const dem_world *w) {
+    const double dt = (double)w->desc.dt, kick = (double)demi_length(w->desc.gravity)*dt;
+    return 3*(w->margin.pace + w->margin.walls_pace + kick)*dt;
+}
+/* Returns the gap, m, below which contacts of any two bodies are found in this step. With impulses
+   it is at least a hundredth of the largest radius. */
+static double demi_foreseen(const dem_world *w) {
+    const double least = 0.01*(double)w->effects.radius_max;
+    if (!demi_reach_free(w)) return w->margin.reach;
+    return DEMI_MIN(w->margin.reach, DEMI_MAX(demi_three_steps(w), least));
+}
+/* Gap, m, of a pair of the pruned list that makes no use of its span. */
+DEM_INLINE dem_real demi_near_margin(const dem_world *w) {
+    return (dem_real)(w->margin.cover + w->margin.slack);
+}
 /* Returns the gap, m, below which the law is called. `radii`: sum of both radii; with a wall, the
    radius of the body. 0: the law is called only in contact. */
 DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
-    if (demi_reach_free(w)) return (dem_real)w->margin.reach;
+    if (demi_reach_free(w)) return (dem_real)w->margin.seen;
     return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
 }
 /* Returns the energy `what`, J, of the coming step, summed over all domains. */

@@ -18,7 +18,7 @@
    depends on them.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 27 };
+enum { DEMI_CHECKPOINT_VERSION = 28 };
 
 /* --- the state, visited in the order in which it is checked --- */
 

@@ -78,7 +78,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         demi_print(out, "effects    contacts are impulses, %s; gaps up to %.3g m are "
                 "included\n           last step: %d sweeps left %.3g m/s; %llu steps did not reach "
                 "their tolerance", w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
-                w->margin.reach, w->booked.sweeps, w->booked.residual,
+                demi_foreseen(w), w->booked.sweeps, w->booked.residual,
                 (unsigned long long)w->booked.unsolved);
         if (w->solver.limited)
             demi_print(out, "; in the last of them %d contacts were at their friction limit",

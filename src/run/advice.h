@@ -674,7 +674,7 @@ static double demi_fastest_next(const dem_world *w) {
    upper bound, m/s. */
 static dem_result demi_speed_check(dem_world *w, double speed) {
     const int foreseen = demi_response_is(w, DEMI_FORESEEN);
-    const double seen = foreseen ? w->margin.reach/2 : 0;
+    const double seen = foreseen ? demi_foreseen(w)/2 : 0;
     const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
     double most = 0;
     char who[80] = "a body";

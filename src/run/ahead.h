@@ -39,21 +39,26 @@ static void demi_some_back(dem_world *w, int index) {
 }
 /* Moves bodies and walls half a step ahead. wall->mid keeps the present pose of a wall. wall->ahead
    is its pose a whole step ahead, midway between two detections; surface velocities are those of
-   that time. Bodies that were just set are not ahead (demi_move_midpoint). */
+   that time, and so is the speed of the fastest wall. Bodies that were just set are not ahead
+   (demi_move_midpoint). */
 static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
     demi_parallel(w, w->threads.now, runs, 0, demi_some_ahead);
+    w->margin.walls_pace = 0;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
-        dem_pose pose;
+        dem_pose half, pose;
+        double pace;
         wall->mid = wall->ahead = wall->pose;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &pose);
-        if (demi_pose_sane(&pose)) wall->pose = pose;
+        demi_wall_pose_at(w, wall, w->clock.time + dt/2, &half);
         demi_wall_pose_at(w, wall, w->clock.time + dt, &pose);
-        if (demi_pose_sane(&pose)) wall->ahead = pose;
+        if (demi_pose_sane(&pose)) wall->pose = wall->ahead = pose;
+        pace = demi_wall_pace(w, i);
+        w->margin.walls_pace = pace < 0 ? 1e300 : DEMI_MAX(w->margin.walls_pace, pace);
+        wall->pose = demi_pose_sane(&half) ? half : wall->mid;
     }
 }
 /* Moves bodies and walls back to the positions before demi_ahead. */

@@ -428,6 +428,7 @@ static dem_result demi_step_move(dem_world *w) {
     if (sqrt(turn_rate)*(double)w->clock.dt > (w->desc.allow_large_dt ? 2 : 1))
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->booked.speed_max = sqrt(speed2);
+    w->margin.pace = w->booked.speed_max + sqrt(turn_speed);
     w->margin.step_gone =
         (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt +
         w->cell.squeeze/2;
@@ -535,7 +536,7 @@ static dem_result demi_member_move(dem_world *w) {
    for the next list it may not be. */
 static dem_result demi_member_near(dem_world *w) {
     if (!w->stage.near_stale && !w->stage.near_chosen && !demi_near_due(w)) return DEM_OK;
-    if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
+    if (!w->stage.near_chosen && demi_near_worn(w)) demi_near_choose(w);
     w->stage.near_chosen = 1;
     if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
     w->stage.near_chosen = 0;

@@ -8,13 +8,15 @@
    spheres come first, and >>members tests the others. The list is rebuilt from the candidates after
    the time margin.span, or earlier if accelerations may have used up the slack. It takes contact
    histories from the previous pruned list or, after a search, from demi_filed. Results do not
-   depend on how long a list lasts, because one zero more or less does not change a sum. Proof that
-   no contact is missed: let v be the relative speed of two bodies when the list is built. A step
+   depend on how long a list lasts, because one zero more or less does not change a sum; one
+   exception: whether a sheet lies between two bodies is decided when a list is built. Proof that no
+   contact is missed: let v be the relative speed of two bodies when the list is built. A step
    changes a velocity by at most last_change, that is dt times the largest acceleration of all
    bodies. After n steps the relative velocity has changed by at most 2 change, where change is the
    sum of last_change. So the two have approached by at most v t + creep, where creep is the sum
-   over steps of 2 dt change. A pair that is not in the list had a gap larger than v span + slack.
-   As long as age < span and creep < slack, the pair does not touch.
+   over steps of 2 dt change. A pair that is not in the list had a gap larger than v span + slack +
+   cover. As long as age < span and creep < slack, its gap is larger than cover, the range of
+   contacts.
    --------------------------------------------------------------------------------------------- */
 
 /* --- species: classes of equal spheres, and the coefficients of every two species. A scene has few
@@ -196,7 +198,7 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
     const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
-    const dem_real margin = (dem_real)(w->margin.reach + w->margin.slack);
+    const dem_real margin = demi_near_margin(w);
     const dem_real span = (dem_real)w->margin.span;
     const int room = w->near.stride - DEMI_LANES;
     const int32_t *shape = w->bodies.shape;
@@ -218,19 +220,12 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
 }
 /* Upper bound, m/s, on the approach speed of the surfaces of two bodies, rotation included. */
 static dem_real demi_approach(const dem_world *w, int a, int b) {
-    const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
-    dem_real speed = demi_length(demi_sub(demi_at(w->bodies.vel + 4*b),
-                                          demi_at(w->bodies.vel + 4*a)));
-    if (fa) speed += demi_length(demi_at(w->bodies.spin + 4*a))*fa->moment_arm*
-                     demi_scale_of(w, a, fa);
-    if (fb) speed += demi_length(demi_at(w->bodies.spin + 4*b))*fb->moment_arm*
-                     demi_scale_of(w, b, fb);
-    return speed;
+    return demi_length(demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a))) +
+        demi_turn_speed(w, a) + demi_turn_speed(w, b);
 }
 /* Gap, m, below which two bodies, or parts of them, may touch during the life of the list. */
 static dem_real demi_near_cut(const dem_world *w, int a, int b) {
-    return (dem_real)(w->margin.reach + w->margin.slack) +
-        (dem_real)w->margin.span*demi_approach(w, a, b);
+    return demi_near_margin(w) + (dem_real)w->margin.span*demi_approach(w, a, b);
 }
 /* Returns the spheres of a body, rows of centre (relative to the body's) and radius, m, and their
    number; null if the body has other parts. */
@@ -635,11 +630,12 @@ static void demi_quiet_mark(dem_world *w) {
 /* Chooses span and slack of the next pruned list. The cost is estimated from counts, not from time,
    so that every run makes the same choice: 1 for a force, and for building the list 0.15 for each
    candidate and 1 for each of its pairs (bench/ measures both). With a longer span the list
-   contains more pairs that do not touch, and is built less often. */
+   contains more pairs that do not touch, and is built less often. Those within the range of the law
+   are in it whatever the span. */
 static void demi_near_choose(dem_world *w) {
     const double r = (double)(w->effects.radius_min > 0 ? w->effects.radius_min : 1),
         dt = (double)w->clock.dt;
-    double near = 0, touching = 0, candidates = 0, longer = 1, span = w->margin.span;
+    double near = 0, touching = 0, candidates = 0, longer = 1, span = w->margin.span, beyond;
     int d;
     if (span < dt) span = dt;                   /* the first list */
     if (w->margin.age > 0) {
@@ -651,8 +647,10 @@ static void demi_near_choose(dem_world *w) {
             candidates += domain->own + domain->cross;
         }
         if (w->effects.unlike) candidates *= 6;   /* support points, some gaps */
+        beyond = w->margin.slack + span*w->margin.pace;
+        beyond = (near - touching)*(w->margin.cover > 0 ? beyond/(w->margin.cover + beyond) : 1);
         longer = sqrt((0.15*candidates + near)*dt/
-                      (w->margin.age*DEMI_MAX(near - touching, 0.01*w->bodies.count)));
+                      (w->margin.age*DEMI_MAX(beyond, 0.01*w->bodies.count)));
         longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
         span = DEMI_MIN(DEMI_MAX(w->margin.age*longer, 2*dt), 1000*dt);
         /* creep grows with the square of time */
@@ -668,9 +666,13 @@ static void demi_near_pass(dem_world *w, double change) {
     w->margin.creep += 2*w->margin.change*(double)w->clock.dt + w->cell.squeeze;
     w->margin.age += (double)w->clock.dt;
 }
+/* True if span or slack of the pruned list are used up. */
+static int demi_near_worn(const dem_world *w) {
+    return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
+}
 /* True if the pruned list must be rebuilt. */
 static int demi_near_due(const dem_world *w) {
-    return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
+    return demi_near_worn(w) || (demi_reach_free(w) && demi_foreseen(w) > w->margin.cover);
 }
 /* Allocates the contacts of two bodies that >>members may merge. Returns 0 if memory runs out. */
 static int demi_merging_reserve(dem_world *w) {
@@ -689,6 +691,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     w->near = w->near_last;
     w->near_last = swap;
     w->near_fresh = fresh;
+    w->margin.cover = DEMI_MIN(w->margin.reach, 1.5*demi_foreseen(w));
     if (!demi_quiet_reserve(w, w->bodies.count)) {
         w->near_last = w->near;
         w->near = swap;

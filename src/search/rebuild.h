@@ -45,12 +45,13 @@ static demi_rubbing demi_pairs_rub(const dem_world *w) {
     return rub;
 }
 /* Returns the largest gap, m, at which a law is called, if the largest radius is `radius`. With
-   impulses contacts are found ahead of time: three steps of the fastest body, at most one radius,
-   and less in a short period, where a fast partner is found later. */
+   impulses contacts are found ahead of time: at most one radius and three steps of the points that
+   are fastest now, and less in a short period, where a fast partner is found later; at least 0.1
+   radii, since lists last while bodies become faster (demi_foreseen: the gap of one step). */
 static double demi_reach_of(const dem_world *w, double radius) {
     if (demi_reach_free(w)) {
         const demi_periods p = demi_periods_of(w);
-        double seen = DEMI_MIN(3*w->booked.speed_max*(double)w->desc.dt, radius);
+        double seen = DEMI_MIN(demi_three_steps(w), radius);
         int k;
         for (k = 0; k < 3; k++) {
             const double skin = DEMI_MAX((double)w->desc.skin, 0);
@@ -77,6 +78,15 @@ static double demi_fastest(const dem_world *w) {
             most = DEMI_MAX(most, (double)demi_dot(demi_at(w->bodies.vel + 4*i),
                                                    demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
+}
+/* Books the speeds of bodies, which may be new since the last step. */
+static void demi_pace_book(dem_world *w) {
+    const double fastest = demi_fastest(w);
+    dem_real turn = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) turn = DEMI_MAX(turn, demi_turn_speed(w, i));
+    demi_speed_book(w, fastest);
+    w->margin.pace = DEMI_MAX(w->margin.pace, fastest + (double)turn);
 }
 /* Determines the laws in force, the range of radii, and whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
@@ -110,8 +120,7 @@ static void demi_effects(dem_world *w) {
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count && !(w->effects.clustered && w->bodies.shaped);
-    if (demi_reach_free(w))                     /* velocities may be new since the last step */
-        demi_speed_book(w, demi_fastest(w));
+    if (demi_reach_free(w)) demi_pace_book(w);
     w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
@@ -263,7 +272,7 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
                                                 demi_at(w->bodies.pos + 4*a)));
     const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
     return demi_length(x) < demi_radius(w, a) + demi_radius(w, b) +
-           (dem_real)(w->margin.reach + w->margin.slack) + (dem_real)w->margin.span*demi_length(u);
+           demi_near_margin(w) + (dem_real)w->margin.span*demi_length(u);
 }
 /* Inserts body i, just appended, into the list. found: all bodies whose gap to it may be below the
    skin, ascending. Returns 0 if there is no room; then a rebuild is needed. It does not allocate:

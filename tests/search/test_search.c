@@ -517,6 +517,7 @@ int main(int argc, char **argv) {
             uint64_t seed = 11;
             desc.dt = DEM_R(2e-6);
             desc.response = response ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+            if (response) desc.law_range = DEM_R(1.5e-4);   /* a tenth of a radius: many pairs of spheres are near */
             desc.skin = DEM_R(3e-4);
             for (k = 0; k < 3; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
             desc.domain = dem_box_make(0, 0, 0, DEM_R(0.016), DEM_R(0.016), DEM_R(0.016));
