@@ -473,6 +473,7 @@
      [MIL]     a thesis on tumbling mills on a GPU (our copy has neither author nor year): laws by
                the step, meshes, segments
      [MW47]    Mann & Whitney, Ann. Math. Stat. 18 (1947) 50: comparison of ranks
+     [ODO15]   O'Donoghue & Candes, Found. Comput. Math. 15 (2015) 715: when to restart
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
      [PAI95]   Painleve, C. R. Acad. Sci. Paris 121 (1895) 112: a rod that friction jams
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids

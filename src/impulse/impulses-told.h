@@ -32,6 +32,7 @@ static int demi_impulses_room(dem_world *w) {
     int d;
     if (!demi_joints_room(w)) return 0;
     movers += (size_t)w->joint_count;
+    s->mover_count = (int)movers;
     for (d = 0; d < w->domain_count; d++) {
         s->meeting_first[d] = (int)n;
         n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
@@ -39,7 +40,7 @@ static int demi_impulses_room(dem_world *w) {
     s->twisted = demi_impulses_twist(w);
     return DEMI_GROW(w, s->meetings, n) && DEMI_GROW(w, s->contacts, n) &&
         DEMI_GROW(w, s->beside, n) && DEMI_GROW(w, s->runs, n/DEMI_SWEEP_RUN + DEMI_COLOURS) &&
-        DEMI_GROW(w, s->movers, solver->parts ? 2*movers : movers) &&
+        DEMI_GROW(w, s->movers, (size_t)solver->copies*movers) &&
         DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
         (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
         DEMI_GROW(w, s->vectors, (size_t)solver->vectors*n) && DEMI_GROW(w, s->degrees, bodies) &&
@@ -75,12 +76,12 @@ static void demi_impulses_lift(dem_world *w, int index) {
 }
 /* Finds the lifts of all bodies, in at most `most` sweeps. */
 static void demi_lifts_solve(dem_world *w, int most) {
-    demi_solved o = {0, 0, 0};
+    demi_solved o = {0, 0, 0, 0};
     do {
         demi_colours_all(w, demi_impulses_lift);
         demi_solved_tell(&w->solver, &o, demi_runs_sum(&w->solver));
     } while (o.worst > 0 && (++o.sweeps < DEMI_LIFTS ||
-                             (o.sweeps < most && demi_solved_open(w, &o))));
+                             (o.sweeps < most && demi_solved_far(w, &o))));
 }
 /* True if no contact and no joint acts on body i. */
 static int demi_mover_free(const dem_world *w, int i) {
@@ -230,10 +231,11 @@ static void demi_impulses_fixed(dem_world *w) {
 enum { DEMI_TAMINGS = 8 };
 /* Mends the two kinds of contacts that may add energy, and returns their number. Newton's
    restitution and friction together may, if the slip reverses: halves the restitution of such an
-   impact; with `last` sets it to 0, which loses energy for any shape. A contact that separates may,
+   impact; with `last` sets it to 0, which loses energy for any shape. error: m/s, of the solve,
+   which is no such gain. A contact that separates may,
    if an impact elsewhere on the body throws it back and a push stops it at a lower speed than it
    had: lets it approach at that speed, and bounce in the next step. */
-static int demi_impulses_tame(dem_world *w, int last) {
+static int demi_impulses_tame(dem_world *w, double error, int last) {
     demi_solver *s = &w->solver;
     int i, tamed = 0;
     for (i = 0; i < s->count; i++) {
@@ -249,7 +251,8 @@ static int demi_impulses_tame(dem_world *w, int last) {
         after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
         p = demi_add(demi_scale(c->normal, c->push), c->slip);
         gain = demi_dot(p, demi_add(before, after));
-        if (!(gain > (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-14))*-c->bias*c->push)) continue;
+        if (!(gain > ((DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-14))*-c->bias + (dem_real)error)*
+                     c->push)) continue;
         c->bias = last ? 0 : c->bias/2;
         tamed++;
     }
@@ -271,30 +274,34 @@ static int demi_solver_limited(const demi_solver *s) {
 static void demi_impulses(dem_world *w) {
     demi_solver *s = &w->solver;
     const int most = w->desc.sweeps ? w->desc.sweeps : 200;
-    demi_solved solved = {0, 0, 0};
+    demi_solved solved = {0, 0, 0, 0};
     double farthest = 0;
-    int i;
+    int i, d;
     s->dt = w->clock.dt;
     demi_domains_do(w, demi_movers_lay);
     demi_joints_lay(w);
     demi_domains_do(w, demi_impulses_meet);
+    for (d = s->faced = 0; d < w->domain_count; d++)
+        s->faced |= w->domains[d].faced && !demi_solvers[w->desc.solver].parts;
     demi_impulses_colour(w);
     demi_domains_do(w, demi_impulses_lay);
     if (s->count || w->joint_count) {
         demi_colours_all(w, demi_impulses_warm);
         demi_joints_warm(w);
         solved = demi_solvers[w->desc.solver].solve(w, most);
-        for (i = 0; i < DEMI_TAMINGS && demi_impulses_tame(w, i == DEMI_TAMINGS - 1); i++)
+        s->faced = 0;                           /* what follows begins with a small residual */
+        for (i = 0; i < DEMI_TAMINGS &&
+                    demi_impulses_tame(w, solved.worst, i == DEMI_TAMINGS - 1); i++)
             solved = demi_solvers[w->desc.solver].solve(w, most);
     }
-    if (demi_solvers[w->desc.solver].parts && !demi_solved_open(w, &solved)) {
+    if (demi_solvers[w->desc.solver].parts && !demi_solved_far(w, &solved)) {
         demi_runs_all(w, demi_impulses_release);
         demi_colours_all(w, demi_vectors_apply);
     }
     w->booked.sweeps = solved.sweeps;
     w->booked.residual = solved.worst;
     w->booked.residual_rms = solved.rms;
-    if (demi_solved_open(w, &solved)) {
+    if (demi_solved_far(w, &solved)) {
         w->booked.unsolved++;
         s->limited = demi_solver_limited(s);
     }

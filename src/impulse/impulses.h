@@ -61,6 +61,7 @@ typedef struct demi_twist {
     dem_vec3 moment;               /* N m s, angular impulse on b */
     dem_real per_roll, per_spin;   /* kg m2, effective inertia across and about the normal */
     dem_real roll, spin;           /* m, limits of the moment divided by push */
+    dem_vec3 by, way;              /* N m s: change of the last sweep, last direction */
 } demi_twist;
 /* Colours of contacts; contacts that a thread takes at a time. */
 enum { DEMI_COLOURS = 64, DEMI_SWEEP_RUN = 256 };
@@ -210,6 +211,7 @@ static void demi_impulses_meet(dem_world *w, int d) {
     demi_solver *s = &w->solver;
     demi_meeting *m = s->meetings + s->meeting_first[d];
     int p, e, i;
+    domain->faced = 0;
     for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
         const size_t at = (size_t)d*stride + (size_t)p;
         const int a = w->near.a[at], b = w->near.b[at];
@@ -237,6 +239,7 @@ static void demi_impulses_meet(dem_world *w, int d) {
             m->a = k->a;
             m->b = k->b >= 0 ? k->b : w->bodies.count + w->kept_first[d] + i;
             m++->home = ~i;
+            domain->faced |= k->corners > 1;
         } else memset(k->memory, 0, sizeof k->memory);
     }
     s->meeting_count[d] = (int)(m - (s->meetings + s->meeting_first[d]));

@@ -9,6 +9,7 @@
                     mu sqrt(gt/gn)). Between two sweeps the impulses also go on along a conjugate
                     direction [SIL10], as in the method of Fletcher and Reeves, with the change of
                     a sweep as the negative gradient; the next sweep projects onto the cones again.
+                    The direction begins again where a change opposes it ([ODO15]).
      Jacobi         all contacts at once; each takes a part of its step that is smaller the more
                     contacts its bodies have [TON12]. For comparison: it needs six to twelve times
                     as many sweeps.
@@ -95,20 +96,29 @@ DEM_INLINE dem_real demi_impulse_slides(const demi_impulse *c, dem_vec3 u, dem_r
     return demi_dot(c->slip, c->slip) >= most*most && demi_dot(slip, slip) > slow*slow ? DEM_R(1)
                                                                                         : DEM_R(0);
 }
-/* Solves the rolling and spinning friction of one contact alone, and applies the change. */
+/* Returns the part s->step of a direction, by which an impulse goes on. The next direction is this
+   plus `by`, the change of the last sweep. */
+DEM_INLINE dem_vec3 demi_way_on(const demi_solver *s, dem_vec3 *way, dem_vec3 by) {
+    const dem_vec3 on = s->sweep ? demi_scale(*way, s->step) : demi_v(0, 0, 0);
+    *way = s->sweep ? demi_add(on, by) : on;
+    return on;
+}
+/* Solves the rolling and spinning friction of one contact alone, after its impulse has gone on, and
+   applies the change. */
 DEM_INLINE void demi_twist_solve(const demi_solver *s, const demi_impulse *c, int shaped) {
     demi_twist *t = s->twists + (c - s->contacts);
     const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
     const dem_vec3 n = c->normal, w = demi_sub(demi_at(b->w), demi_at(a->w));
-    const dem_real wn = demi_dot(w, n), mn = demi_dot(t->moment, n), most = t->spin*c->push;
-    const dem_vec3 wt = demi_sub(w, demi_scale(n, wn)), mt = demi_sub(t->moment, demi_scale(n, mn));
+    const dem_vec3 had = demi_add(t->moment, demi_way_on(s, &t->way, t->by));
+    const dem_real wn = demi_dot(w, n), mn = demi_dot(had, n), most = t->spin*c->push;
+    const dem_vec3 wt = demi_sub(w, demi_scale(n, wn)), mt = demi_sub(had, demi_scale(n, mn));
     const dem_real spin = DEMI_MAX(-most, DEMI_MIN(most, mn - wn*t->per_spin));
     const dem_vec3 roll = demi_impulse_cap(demi_sub(mt, demi_scale(wt, t->per_roll)),
                                            t->roll*c->push);
-    const dem_vec3 moment = demi_add(roll, demi_scale(n, spin)), by = demi_sub(moment, t->moment);
-    t->moment = moment;
-    demi_mover_push(s, c->a, demi_v(0, 0, 0), demi_scale(by, -1), shaped);
-    demi_mover_push(s, c->b, demi_v(0, 0, 0), by, shaped);
+    t->moment = demi_add(roll, demi_scale(n, spin));
+    t->by = demi_sub(t->moment, had);
+    demi_mover_push(s, c->a, demi_v(0, 0, 0), demi_scale(t->by, -1), shaped);
+    demi_mover_push(s, c->b, demi_v(0, 0, 0), t->by, shaped);
 }
 /* Sums over one run of contacts: largest squared residual, (m/s)^2; sum of squared residuals; two
    more sums with a meaning for each solver. */
@@ -174,30 +184,95 @@ static void demi_impulses_warm(dem_world *w, int index) {
     }
 }
 
-/* Columns of s->vectors, one vector per contact: BY: change of the impulse. Gauss-Seidel: WAY: the
-   direction in which impulses go on. Gradients: X, UX: impulse and relative velocity of the last
-   iterate; Y, UY: of the point where the gradient is taken. BROUGHT: relative velocity that BY
-   causes. BEGAN: impulse at the start. GIVEN: its x is the given bias. */
-enum { DEMI_BY, DEMI_WAY, DEMI_X = DEMI_WAY, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN,
+/* Columns of s->vectors, one vector per contact: BY: change of the impulse. X, UX: impulse and
+   relative velocity of the last iterate; Y, UY: of the point where the gradient is taken. BROUGHT:
+   relative velocity that BY causes. BEGAN: impulse at the start. GIVEN: its x is the given bias. */
+enum { DEMI_BY, DEMI_X, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN,
        DEMI_GIVEN };
 DEM_INLINE dem_vec3 *demi_vector_at(const demi_solver *s, int column, int i) {
     return s->vectors + (size_t)column*(size_t)s->count + i;
 }
 
-/* --- Gauss-Seidel --- */
+/* --- Gauss-Seidel. Each contact has two vectors: the change of its impulse in the last sweep, and
+   the direction in which the impulse goes on before the next. The velocity of a body goes on along
+   the sum of these directions, which it has from its own changes: no contact is read for it. In the
+   first sweep nothing goes on. --- */
 
-/* Bodies are prefetched this many contacts ahead, which saves a tenth of the time. */
-enum { DEMI_SOON = 8 };
+/* Arrays of solver bodies: velocities before a sweep or, where joints follow it, what the sweep has
+   changed; directions in which velocities go on. */
+enum { DEMI_SWEPT = 1, DEMI_MOVER_WAY, DEMI_SEIDEL_COPIES };
+static demi_mover *demi_mover_copy(const dem_world *w, int copy) {
+    return w->solver.movers + (size_t)copy*(size_t)w->solver.mover_count;
+}
+/* Tells what a sweep has changed, before joints change it too. */
+static void demi_movers_swept(dem_world *w, int d) {
+    demi_mover *now = w->solver.movers, *swept = demi_mover_copy(w, DEMI_SWEPT);
+    int i, k;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++)
+        for (k = 0; k < 3; k++) {
+            swept[i].v[k] = now[i].v[k] - swept[i].v[k];
+            swept[i].w[k] = now[i].w[k] - swept[i].w[k];
+        }
+}
+/* Lets three components go on; told: `swept` is the change of the last sweep. */
+DEM_INLINE void demi_velocity_on(const demi_solver *s, int told, dem_real *now, dem_real *swept,
+                                 dem_real *way) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const dem_real on = s->sweep ? s->step*way[k] : 0;
+        way[k] = s->sweep ? on + (told ? swept[k] : now[k] - swept[k]) : 0;
+        swept[k] = now[k] += on;
+    }
+}
+/* Lets the bodies of work group d go on, before a sweep. */
+static void demi_movers_on(dem_world *w, int d) {
+    demi_mover *now = w->solver.movers, *swept = demi_mover_copy(w, DEMI_SWEPT);
+    demi_mover *way = demi_mover_copy(w, DEMI_MOVER_WAY);
+    const int told = w->solver.node_count > 0;
+    int i;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
+        demi_velocity_on(&w->solver, told, now[i].v, swept[i].v, way[i].v);
+        demi_velocity_on(&w->solver, told, now[i].w, swept[i].w, way[i].w);
+    }
+}
+/* Lets the impulses of contacts i to end - 1 go on. */
+DEM_INLINE void demi_contacts_on(const demi_solver *s, int i, int end) {
+    dem_vec3 *by = s->vectors + 2*(size_t)i;
+    for (; i < end; i++, by += 2) {
+        demi_impulse *c = s->contacts + i;
+        const dem_vec3 on = demi_way_on(s, by + 1, *by);
+        const dem_real push = demi_dot(on, c->normal);
+        c->push += push;
+        c->slip = demi_add(c->slip, demi_sub(on, demi_scale(c->normal, push)));
+    }
+}
+/* Adds a change `by` of an impulse (along the normal: change) to the sums of a sweep, and stores
+   it. first: its square; second: its product with the direction; both by the inverse effective
+   masses. */
+DEM_INLINE void demi_sums_way(demi_run_sums *o, const demi_impulse *c, dem_real change, dem_vec3 by,
+                              dem_vec3 *vectors) {
+    const dem_real more = change*(c->gn - c->gt);
+    o->first += more*change + demi_dot(by, by)*c->gt;
+    o->second += more*demi_dot(vectors[1], c->normal) + demi_dot(by, vectors[1])*c->gt;
+    vectors[0] = by;
+}
+/* Bodies are prefetched this many contacts ahead, which saves a tenth of the time; so many contacts
+   go on before they are solved. */
+enum { DEMI_SOON = 8, DEMI_ON = 16 };
 /* One Gauss-Seidel sweep over a run of contacts, for either cone and for spheres or any shapes. */
 #define DEMI_SEIDEL(NAME, CONVEX, SHAPED) \
     static void NAME(dem_world *w, int index) { \
         demi_solver *s = &w->solver; \
         demi_run_sums sums = {0, 0, 0, 0}; \
-        int i, end; \
-        for (demi_run_bounds(s, index, &i, &end); i < end; i++) { \
+        int i, end, on; \
+        for (demi_run_bounds(s, index, &i, &end), on = i; i < end; i++) { \
             demi_impulse *c = s->contacts + i; \
             dem_real push; \
             dem_vec3 slip, by; \
+            if (i == on) { \
+                on = DEMI_MIN(on + DEMI_ON, end); \
+                demi_contacts_on(s, i, on); \
+            } \
             if (i + DEMI_SOON < end) { \
                 DEMI_FETCH(s->movers + c[DEMI_SOON].a); \
                 DEMI_FETCH(s->movers + c[DEMI_SOON].b); \
@@ -205,9 +280,7 @@ enum { DEMI_SOON = 8 };
             demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, SHAPED), \
                                                      &push, &slip, CONVEX)); \
             by = demi_add(demi_scale(c->normal, push - c->push), demi_sub(slip, c->slip)); \
-            sums.first += (push - c->push)*(push - c->push)*(c->gn - c->gt) + \
-                demi_dot(by, by)*c->gt; \
-            *demi_vector_at(s, DEMI_BY, i) = by; \
+            demi_sums_way(&sums, c, push - c->push, by, s->vectors + 2*(size_t)i); \
             c->push = push; \
             c->slip = slip; \
             demi_impulse_apply(s, c, by, SHAPED); \
@@ -220,39 +293,38 @@ DEMI_SEIDEL(demi_seidel_spheres_convex, 1, 0)
 DEMI_SEIDEL(demi_seidel_shapes, 0, 1)
 DEMI_SEIDEL(demi_seidel_shapes_convex, 1, 1)
 #undef DEMI_SEIDEL
-/* Result of a solver: number of sweeps; largest and rms residual of the last sweep, m/s. */
-typedef struct demi_solved { int sweeps; double worst, rms; } demi_solved;
+/* Result of a solver: number of sweeps; largest and rms residual of the last sweep, rms residual of
+   the first, m/s. */
+typedef struct demi_solved { int sweeps; double worst, rms, first; } demi_solved;
 /* Sets the residuals of a result from the sums of a sweep. */
 static void demi_solved_tell(const demi_solver *s, demi_solved *o, demi_run_sums sums) {
     o->worst = sqrt((double)sums.worst);
     o->rms = sqrt((double)sums.squares/DEMI_MAX(s->count, 1));
+    if (!o->sweeps) o->first = o->rms;
+}
+/* Returns the allowed rms residual without desc.tolerance: 0.05 g dt + 1e-5 times the largest
+   speed + 1e-12 m/s. */
+static double demi_solved_enough(const dem_world *w) {
+    return 0.05*(double)demi_length(w->desc.gravity)*(double)w->clock.dt +
+        1e-5*w->booked.speed_max + 1e-12;
 }
 /* True if the solution is not converged. With desc.tolerance: the largest residual exceeds it.
-   Otherwise: the rms residual exceeds 0.05 g dt + 1e-5 times the largest speed + 1e-12 m/s, or
-   the largest residual exceeds 30 times that. */
-static int demi_solved_open(const dem_world *w, const demi_solved *o) {
-    const double kick = (double)demi_length(w->desc.gravity)*(double)w->clock.dt;
-    const double enough = 0.05*kick + 1e-5*w->booked.speed_max + 1e-12;
+   Otherwise: the rms residual exceeds what is allowed, or the largest 30 times that. */
+static int demi_solved_far(const dem_world *w, const demi_solved *o) {
+    const double enough = demi_solved_enough(w);
     if (w->desc.tolerance > 0) return o->worst > (double)w->desc.tolerance;
     return o->rms > enough || o->worst > 30*enough;
 }
-/* Adds s->step times the last direction, unless that is 0, to the impulses of a run. This plus the
-   change of the last sweep is the next direction. */
-static void demi_seidel_on(dem_world *w, int index) {
-    demi_solver *s = &w->solver;
-    const int shaped = w->bodies.shaped > 0;
-    int i, end;
-    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
-        demi_impulse *c = s->contacts + i;
-        dem_vec3 *way = demi_vector_at(s, DEMI_WAY, i), by = demi_scale(*way, s->step);
-        dem_real push;
-        if (!(s->step > 0)) { *way = *demi_vector_at(s, DEMI_BY, i); continue; }
-        *way = demi_add(by, *demi_vector_at(s, DEMI_BY, i));
-        push = demi_dot(by, c->normal);
-        c->push += push;
-        c->slip = demi_add(c->slip, demi_sub(by, demi_scale(c->normal, push)));
-        demi_impulse_apply(s, c, by, shaped);
-    }
+/* True if sweeps go on: if the solution is not converged and, where bodies lie on faces and there
+   is no desc.tolerance, until the rms residual is half of the first and a tenth of what is allowed,
+   or 3e-4 of that. An error acts on the next step like a change of velocity. If a step mends at
+   least half of the error that it starts with, errors of successive steps do not add up, and towers
+   do not sway. */
+static int demi_solved_open(const dem_world *w, const demi_solved *o) {
+    const double enough = demi_solved_enough(w), mends = DEMI_MIN(o->first/2, enough/10);
+    const double tiny = 3e-4*enough + (DEMI_SINGLE ? 1e-6 : 0)*w->booked.speed_max;
+    return demi_solved_far(w, o) || (w->solver.faced && !(w->desc.tolerance > 0) &&
+                                     o->rms > DEMI_MAX(mends, tiny));
 }
 /* Solves contacts and joints by Gauss-Seidel, in at most `most` sweeps; more if the energy guard of
    joints requires them. */
@@ -261,22 +333,26 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
                                 demi_seidel_shapes, demi_seidel_shapes_convex};
     const demi_task task = kinds[(w->desc.cone == DEM_CONE_CONVEX) + 2*(w->bodies.shaped > 0)];
     demi_solver *s = &w->solver;
-    demi_solved o = {0, 0, 0};
+    demi_solved o = {0, 0, 0, 0};
     dem_real last = 0;                          /* squared size of the change of the last sweep */
     int open;
-    if (s->count) memset(demi_vector_at(s, DEMI_WAY, 0), 0, (size_t)s->count*sizeof *s->vectors);
+    s->step = 0;
     do {
         demi_run_sums sums;
         dem_real joints;
+        s->sweep = o.sweeps;
+        demi_domains_do(w, demi_movers_on);
         demi_colours_all(w, task);
+        if (s->node_count) demi_domains_do(w, demi_movers_swept);
         sums = demi_runs_sum(s);
         joints = demi_joints_sweep(w);          /* once: a macro would evaluate it twice */
         sums.worst = DEMI_MAX(sums.worst, joints);
         demi_solved_tell(s, &o, sums);
         open = ++o.sweeps < most && demi_solved_open(w, &o);
-        s->step = sums.first < last ? sums.first/last : 0;      /* 0: begins again */
+        /* 0: the direction begins again; the sweep opposed it, or changes grew by a tenth */
+        s->step = open && sums.second >= 0 && sums.first < DEM_R(1.1)*last
+            ? DEMI_MIN(sums.first/last, 1) : 0;
         last = sums.first;
-        if (open) demi_colours_all(w, demi_seidel_on);
     } while (open || demi_joints_guard(w));
     return o;
 }
@@ -318,7 +394,7 @@ static void demi_vectors_apply(dem_world *w, int index) {
 /* Solves by Jacobi's method in at most `most` sweeps. */
 static demi_solved demi_solve_jacobi(dem_world *w, int most) {
     demi_solver *s = &w->solver;
-    demi_solved o = {0, 0, 0};
+    demi_solved o = {0, 0, 0, 0};
     int i;
     memset(s->degrees, 0, (size_t)w->bodies.count*sizeof *s->degrees);
     for (i = 0; i < s->count; i++) {
@@ -540,7 +616,7 @@ static demi_solved demi_solve_gradient(dem_world *w, int most,
     demi_solver *s = &w->solver;
     const size_t movers = (size_t)(w->bodies.count + w->kept_first[DEMI_DOMAINS]);
     const int coulomb = w->desc.cone == DEM_CONE_COULOMB;
-    demi_solved o = {0, 0, 0};
+    demi_solved o = {0, 0, 0, 0};
     double a = 1, b = 1;
     int i;
     memcpy(s->movers + movers, s->movers, movers*sizeof *s->movers);
@@ -570,18 +646,19 @@ static demi_solved demi_solve_spectral(dem_world *w, int most) {
     return demi_solve_gradient(w, most, demi_step_spectral);
 }
 
-/* A solver. vectors: number of columns that it needs; moments: 1 if it supports rolling and
-   spinning friction; joints: 1 if it supports joints; parts: 1 if it takes parts of steps, so that
-   contacts that do not push may keep a remainder of an impulse; most: largest number of sweeps. */
+/* A solver. vectors: number of columns that it needs; copies: number of arrays of solver bodies;
+   moments: 1 if it supports rolling and spinning friction; joints: 1 if it supports joints; parts:
+   1 if it takes parts of steps, so that contacts that do not push may keep a remainder of an
+   impulse; most: largest number of sweeps. */
 typedef struct demi_solver_row {
     const char *name;
-    int vectors, moments, joints, parts;
+    int vectors, copies, moments, joints, parts;
     demi_solved (*solve)(dem_world *w, int most);
 } demi_solver_row;
 static const demi_solver_row demi_solvers[] = {
-    {"Gauss-Seidel", DEMI_WAY + 1, 1, 1, 0, demi_solve_seidel},
-    {"Jacobi", 1, 0, 0, 1, demi_solve_jacobi},
-    {"APGD", DEMI_GIVEN + 1, 0, 0, 1, demi_solve_apgd},
-    {"spectral gradients", DEMI_GIVEN + 1, 0, 0, 1, demi_solve_spectral}
+    {"Gauss-Seidel", 2, DEMI_SEIDEL_COPIES, 1, 1, 0, demi_solve_seidel},
+    {"Jacobi", 1, 1, 0, 0, 1, demi_solve_jacobi},
+    {"APGD", DEMI_GIVEN + 1, 2, 0, 0, 1, demi_solve_apgd},
+    {"spectral gradients", DEMI_GIVEN + 1, 2, 0, 0, 1, demi_solve_spectral}
 };
 enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };

@@ -765,6 +765,35 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
+    TEST("impulses: what begins to move between two steps is felt before it overlaps") {
+        /* everything rests at gaps of 0.05 R; then a wall, or a body, moves by 0.09 R in each step, or a rod turns. The
+           first step finds contacts of a body that was set where it was set, half a step early */
+        int kind;
+        for (kind = 0; kind < 3; kind++) {
+            dem_material m;
+            dem_world *world = rigid(0, 1e-3, 0, 0, DEM_CONE_COULOMB, 1, &m);
+            const double r = 0.01, fast = 0.09*r/1e-3;
+            const dem_shape rod = block(world, 10*r, 2*r, 2*r, 0.9*r);
+            const dem_wall wall = dem_wall_plane_add(world, m, at(-1.05*r, 0, 0), at(1, 0, 0));
+            const dem_body ball = dem_sphere_add(world, m, (dem_real)r, at(0, 0, 0));
+            const dem_body other = kind == 2 ? dem_body_add(world, m, rod, at(4.5*r, 2.05*r, 0), dem_quat_make(1, 0, 0, 0))
+                : dem_sphere_add(world, m, (dem_real)r, at(2.05*r, 0, 0));
+            dem_motion motion = DEM_MOTION;
+            CHECK_EQ(dem_world_step(world, 20), DEM_OK);
+            CHECK_EQ(dem_counters_get(world).contacts + dem_counters_get(world).wall_contacts, 0);
+            motion.kind = DEM_MOTION_TRANSLATING;
+            motion.velocity = at(fast, 0, 0);
+            if (kind == 0) CHECK_EQ(dem_wall_motion_set(world, wall, &motion), DEM_OK);
+            if (kind == 1) scene_move(world, other, at(-fast, 0, 0), at(0, 0, 0));
+            if (kind == 2) scene_move(world, other, at(0, 0, 0), at(0, 0, fast/(5*r)));
+            dem_overlap_max_reset(world);
+            CHECK_EQ(dem_world_step(world, 20), DEM_OK);
+            CHECK((double)dem_counters_get(world).overlap_max < (kind ? 0.04 : 1e-3));
+            CHECK(fabs((double)scene_state(world, ball).position.x) > 1e-4*r);
+            dem_world_destroy(world);
+        }
+    }
+
     TEST("impulses: walls, bodies, joints and forces of velocity are followed to second order in dt") {
         int scene;
         if (sizeof(dem_real) == 4) printf("SKIP: single precision ends above the errors that are compared\n");
