@@ -183,11 +183,11 @@ bench-instructions: ### count the instructions of each part of dem.h per body an
 bench-parallel: build/parallel ### measure threads, sizes and searches beside published figures, in minutes
 	@$(BIND) build/parallel
 
-bench-peers: $(BENCHES) $(BENCH_ALSO) ### run the same scenes in dem.h and in LAMMPS, LIGGGHTS and YADE, as far as they are installed
-	@sh bench/peers.sh
+bench-peers: $(BENCHES) $(BENCH_ALSO) ### run the same scenes in dem.h and in LAMMPS, LIGGGHTS, YADE, Bullet and ODE, as far as they are installed
+	@sh bench/peers.sh && sh bench/rigid.sh
 
-peers-check: build/bench build/blocks build/beside ### run bench-peers in a short form: small scenes, one round, all codes that are installed
-	@SHORT=1 sh bench/peers.sh
+peers-check: build/bench build/blocks build/beside build/rigid ### run bench-peers in a short form: small scenes, one round, all codes that are installed
+	@SHORT=1 sh bench/peers.sh && SHORT=1 sh bench/rigid.sh
 
 bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/ellipsoids ### measure the speeds in docs/ again and write them; PAGES=roofline: one page
 	@sh bench/pages.sh $(PAGES)
