@@ -4106,17 +4106,18 @@ class WorldDesc(Struct):
         ('response', Response,
          '"impulses" needs dt > 0 and law None. Its steps are of second order (docs/impulses.md) for either '
          'value of integrator that it accepts, 0 and "symplectic_euler". law_range (m) is then the gap below '
-         'which contacts are solved. If it is 0, dem.h takes three times the distance that the fastest body '
-         'moves in a step, at most the largest radius R and at least 0.1 R. On a periodic axis of length P it '
-         'is at most 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R. The '
-         'fields that follow apply to impulses only.'),
+         'which contacts are solved. If it is 0, dem.h takes three times the distance that the fastest point '
+         'of a body or wall moves in a step, at most the largest radius R and at least 0.01 R. On a periodic '
+         'axis of length P it is at most the larger of 0.1 R and 0.8 (P/2 - 2 R - skin), with skin 0 unless '
+         'you set it. The fields that follow apply to impulses only.'),
         ('cone', Cone, ''),
         ('solver', Solver, ''),
         ('sweeps', ctypes.c_int, 'most sweeps over all contacts in a step; 0 means 200'),
         ('tolerance', Real,
          'm/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when the root'
          ' mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the largest change is '
-         'below 30 times that.'),
+         'below 30 times that. Where polyhedra lie on faces, the root mean square must also fall to a tenth of'
+         ' that and to half of its first value, or to 3e-4 of that.'),
         ('cold_start', ctypes.c_int, '1 begins with zero impulses, not those of the last step'),
         ('unsolved_stops', ctypes.c_int,
          '1 ends the run with StoppedError after a step whose sweeps did not reach the tolerance. With 0 it '
@@ -5823,16 +5824,17 @@ class World(WorldBase):
             the time step, and 1 m/s for the stiffness.
         response: "impulses" needs dt > 0 and law None. Its steps are of second order (docs/impulses.md) for either
             value of integrator that it accepts, 0 and "symplectic_euler". law_range (m) is then the gap below which
-            contacts are solved. If it is 0, dem.h takes three times the distance that the fastest body moves in a
-            step, at most the largest radius R and at least 0.1 R. On a periodic axis of length P it is at most 0.8
-            (P/2 - 2 R - skin), with skin 0 unless you set it, but still at least 0.1 R. The fields that follow apply
-            to impulses only.; one of "springs", "impulses"
+            contacts are solved. If it is 0, dem.h takes three times the distance that the fastest point of a body or
+            wall moves in a step, at most the largest radius R and at least 0.01 R. On a periodic axis of length P it
+            is at most the larger of 0.1 R and 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it. The fields that
+            follow apply to impulses only.; one of "springs", "impulses"
         cone: one of "coulomb", "convex"
         solver: one of "gauss_seidel", "jacobi", "apgd", "spectral"
         sweeps: most sweeps over all contacts in a step; 0 means 200
         tolerance: m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when the
             root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the largest change is below
-            30 times that.
+            30 times that. Where polyhedra lie on faces, the root mean square must also fall to a tenth of that and to
+            half of its first value, or to 3e-4 of that.
         cold_start: 1 begins with zero impulses, not those of the last step
         unsolved_stops: 1 ends the run with StoppedError after a step whose sweeps did not reach the tolerance. With 0
             it continues; World.counters, the report and World.progress_print count such steps.
