@@ -20233,8 +20233,7 @@ static double demi_spot_matters(double off, double gap, double touch, double far
 /* Picks up to four of many points in a plane across n: the deepest, and then by demi_spot_matters
    one by its distance from the deepest, and on either side of the line through both one by its
    distance from that line; if one side has none, one by its distance from the nearest of the three.
-   Returns their number.
-   The range of the search changes nothing while four points touch. */
+   Returns their number. The range of the search changes nothing while four points touch. */
 static int demi_spots_pick(const demi_d3 *x, const double *gap, int count, demi_d3 n, int *out) {
     demi_d3 across;
     double far = 0, touch, most = 0, side[2] = {0, 0};
