@@ -84,6 +84,7 @@
        >>impulses          rigid grains: the contacts and constraints of a step
        >>joints            hinges, ball joints, motors
        >>joints-solved     all joints at once: trees, loops, the bound on their energy
+       >>towers            all contacts of bodies that rest on faces at once
        >>solvers           iterative solvers for impulses
        >>impulses-told     solved impulses to forces, contact history and energy losses
      scene/ - filling a scene: size distributions, fills, feeds
@@ -280,6 +281,7 @@
 #include "impulse/impulses.h"
 #include "impulse/joints.h"
 #include "impulse/joints-solved.h"
+#include "impulse/towers.h"
 #include "impulse/solvers.h"
 #include "impulse/impulses-told.h"
 #endif /* DEM_NO_IMPULSES */

@@ -2,7 +2,7 @@
 # those below it are volume II. No room of volume I may name what only volume II defines: a function, a macro, a type, a
 # table or a constant. Comments and texts may. Each volume has a budget of lines; the public half and src/dem.h itself
 # count to volume I. Prints both, and ends with code 1 if a name crosses or a budget is exceeded.
-BEGIN { budget[1] = 35215; budget[2] = 11500; volume = 1 }
+BEGIN { budget[1] = 35600; budget[2] = 11500; volume = 1 }
 /^   >>services/ { volume = 2 }
 /^#include "/ { split($0, part, "\""); room[++rooms] = part[2]; storey[rooms] = volume }
 END {

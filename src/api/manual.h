@@ -457,6 +457,7 @@
                relative to the flow of a cell
      [FEN12]   Feng, Han & Owen, Comput. Methods Appl. Mech. Eng. 205 (2012) 169: a potential of
                the overlap's volume
+     [FEA08]   Featherstone, Rigid Body Dynamics Algorithms, Springer 2008: Newton-Euler along trees
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
      [GJK88]   Gilbert, Johnson & Keerthi, IEEE J. Robot. Autom. 4 (1988) 193: distance of convex
                bodies

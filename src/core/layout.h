@@ -278,7 +278,8 @@ typedef struct demi_domain {
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
     int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
     int kept_walls;                /* those with walls */
-    int faced;                     /* impulses: 1 if a contact of polyhedra has several points */
+    /* impulses, 1: a contact of polyhedra has several points; a contact has three or more */
+    int faced, seated;
     int kept_same;                 /* where demi_kept_same starts its search */
     int coefs;                     /* rows in use of w->coefs */
     int touching_first;            /* begin of its segment of w->touching */

@@ -262,6 +262,8 @@ struct demi_run_sums;
 struct demi_rod;
 struct demi_joint_node;
 struct demi_link_of;
+struct demi_seat;
+struct demi_tree_body;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
     struct demi_impulse *contacts; /* this and the next three are in the order of colours */
@@ -284,13 +286,18 @@ typedef struct demi_solver {
     int32_t *node_of, *rows;       /* node of each body; row of each entry of the factor */
     struct demi_link_of *links;
     double *blocks;                /* x 36: pivots of the factor, and entries below them */
+    struct demi_seat *seats;       /* see >>towers */
+    struct demi_tree_body *trees;  /* one per body */
+    int32_t *treed;                /* bodies that have a tree */
+    int seat_count, treed_count;
     int node_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; range of the colour being swept; its first run */
     int mover_count;               /* of one array of solver bodies */
-    int sweep;                     /* sweeps before this one */
+    int sweep;                     /* sweeps since the direction began */
     int limited;                   /* contacts at their friction limit in the last unsolved step */
     int twisted;                   /* 1: there is rolling or spinning friction */
-    int faced;                     /* 1: some body lies on a face */
+    int faced, seated;             /* 1: some polyhedron lies on a face, or a tower is tall; some
+                                      contact has three points or more */
     int begins[65];                /* first contact of each colour */
     int meeting_first[DEMI_DOMAINS], meeting_count[DEMI_DOMAINS];
     dem_real dt, step;             /* s; step length of some solvers */

@@ -7,10 +7,16 @@
    w->booked.
    --------------------------------------------------------------------------------------------- */
 
-/* Sets the time step to desc.dt: rigid contacts have no duration that would limit it. Fails if the
-   solver does not support the rolling or spinning friction or the joints of the scene. */
+/* Sets the time step to desc.dt: rigid contacts have no duration that would limit it. Fails if
+   polyhedra would not rest with it, or if the solver does not support the rolling or spinning
+   friction or the joints of the scene. */
 static dem_result demi_impulses_settle(dem_world *w) {
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
+    const double most = w->desc.allow_large_dt ? 0 : demi_rest_limit(w);
+    if (most > 0 && (double)w->desc.dt > most)
+        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most %.3g "
+                         "s for polyhedra as small as these to rest on each other under gravity; "
+                         "use at most %.2g s", (double)w->desc.dt, most, most/1.5);
     if (demi_impulses_twist(w) && !solver->moments)
         return demi_refuse(w, "dem_world_step", "materials have rolling or spinning friction, "
                            "which the solver %s does not support; leave desc.solver at "
@@ -44,7 +50,10 @@ static int demi_impulses_room(dem_world *w) {
         DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
         (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
         DEMI_GROW(w, s->vectors, (size_t)solver->vectors*n) && DEMI_GROW(w, s->degrees, bodies) &&
-        (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
+        (!w->bodies.shaped ||
+         (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies) &&
+          DEMI_GROW(w, s->seats, n/3 + 1) && DEMI_GROW(w, s->trees, bodies) &&
+          DEMI_GROW(w, s->treed, bodies)));
 }
 /* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
    this step and are then discarded, so they add no kinetic energy. They do not rotate bodies. A
@@ -108,10 +117,7 @@ static void demi_movers_force(dem_world *w, int d) {
                 (double)torque[k]*(double)(w->bodies.spin[4*i + k] + m->w[k]);
         for (k = 0; k < 3; k++) b.f[k] = ((m->v[k] - b.v[k])*per - b.g[k])/m->inv;
         if (w->bodies.shaped && w->bodies.shape[i]) {
-            const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
-            const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
-            const dem_vec3 local = dem_quat_unrotate(q, demi_at(m->w));
-            const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*local.x, I.y*local.y, I.z*local.z));
+            const dem_vec3 L = demi_body_turning(w, i, demi_at(m->w));
             if (demi_mover_free(w, i)) continue;
             demi_put(torque, demi_scale(demi_sub(L, demi_at(w->bodies.angular + 4*i)), per));
         } else
@@ -281,15 +287,17 @@ static void demi_impulses(dem_world *w) {
     demi_domains_do(w, demi_movers_lay);
     demi_joints_lay(w);
     demi_domains_do(w, demi_impulses_meet);
-    for (d = s->faced = 0; d < w->domain_count; d++)
+    for (d = s->faced = s->seated = 0; d < w->domain_count; d++) {
         s->faced |= w->domains[d].faced && !demi_solvers[w->desc.solver].parts;
+        s->seated |= w->domains[d].seated;
+    }
     demi_impulses_colour(w);
     demi_domains_do(w, demi_impulses_lay);
     if (s->count || w->joint_count) {
         demi_colours_all(w, demi_impulses_warm);
         demi_joints_warm(w);
         solved = demi_solvers[w->desc.solver].solve(w, most);
-        s->faced = 0;                           /* what follows begins with a small residual */
+        s->faced = s->seated = 0;               /* what follows begins with a small residual */
         for (i = 0; i < DEMI_TAMINGS &&
                     demi_impulses_tame(w, solved.worst, i == DEMI_TAMINGS - 1); i++)
             solved = demi_solvers[w->desc.solver].solve(w, most);

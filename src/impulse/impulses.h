@@ -34,6 +34,7 @@ typedef struct demi_meeting {
     int32_t home;                  /* entry of the pruned neighbour list, or ~entry of the domain's
                                       persistent contacts */
     int32_t at;                    /* index in demi_solver.contacts; before that is known: colour */
+    int32_t same;                  /* 1: with the body or joined walls of the constraint before */
 } demi_meeting;
 /* A contact constraint, second pass: what sweeps read and write, in two cache lines. Impulses are
    those on b; a gets the opposite. */
@@ -52,6 +53,7 @@ typedef struct demi_beside {
        kg, effective mass without rotation */
     dem_real gap, lift, pull, mass;
     dem_real turns;                /* m/s, <= 0: part of bias, see demi_impulse_turns */
+    int holds;                     /* 1: of a seat of >>towers, and holds */
     int bounces;                   /* 1: bias is that of restitution */
     dem_real leaves;               /* m/s: of bodies that separate, the speed of approach at which
                                       a push does no work; else 0 */
@@ -94,6 +96,55 @@ DEM_INLINE void demi_mover_push(const demi_solver *s, int mover, dem_vec3 p, dem
     w = demi_mover_turn(s, mover, l, shaped);
     m->v[0] += p.x*m->inv; m->v[1] += p.y*m->inv; m->v[2] += p.z*m->inv;
     m->w[0] += w.x; m->w[1] += w.y; m->w[2] += w.z;
+}
+/* Returns the velocity of b relative to a at the contact, m/s, with the impulses found so far. */
+DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impulse *c, int shaped) {
+    const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
+    const dem_vec3 wa = demi_at(a->w), wb = demi_at(b->w);
+    const dem_vec3 v = demi_sub(demi_at(b->v), demi_at(a->v));
+    if (shaped) {
+        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
+        const dem_vec3 vb = b->inv > 0 ? demi_add(v, demi_cross(wb, arms[1])) : v;
+        return demi_sub(vb, demi_cross(wa, arms[0]));
+    }
+    return demi_sub(v, demi_cross(demi_add(demi_scale(wa, c->reach_a), demi_scale(wb, c->reach_b)),
+                                  c->normal));
+}
+/* Applies an impulse p, N s, to body b and the opposite to body a. */
+DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
+                                   int shaped) {
+    if (shaped) {
+        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
+        demi_mover_push(s, c->a, demi_scale(p, -1), demi_cross(p, arms[0]), 1);
+        demi_mover_push(s, c->b, p, demi_cross(arms[1], p), 1);
+    } else {
+        const dem_vec3 l = demi_cross(p, c->normal);
+        demi_mover_push(s, c->a, demi_scale(p, -1), demi_scale(l, c->reach_a), 0);
+        demi_mover_push(s, c->b, p, demi_scale(l, c->reach_b), 0);
+    }
+}
+/* Returns the impulse of a contact on b, N s. */
+DEM_INLINE dem_vec3 demi_impulse_vector(const demi_impulse *c) {
+    return demi_add(demi_scale(c->normal, c->push), c->slip);
+}
+/* Adds a change to an impulse. */
+DEM_INLINE void demi_impulse_add(demi_impulse *c, dem_vec3 by) {
+    const dem_real push = demi_dot(by, c->normal);
+    c->push += push;
+    c->slip = demi_add(c->slip, demi_sub(by, demi_scale(c->normal, push)));
+}
+/* Returns the angular momentum, N m s, of body i with spin w, rad/s. */
+static dem_vec3 demi_body_turning(const dem_world *world, int i, dem_vec3 w) {
+    const dem_quat q = demi_quat_at(world->bodies.orient + 4*i);
+    const dem_vec3 I = demi_at(world->bodies.moment + 4*i), x = dem_quat_unrotate(q, w);
+    if (!demi_shape_of(world, i)) return demi_scale(w, 1/world->bodies.inv_inertia[i]);
+    return dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
+}
+/* Returns the allowed rms residual without desc.tolerance: 0.05 g dt + 1e-5 times the largest
+   speed + 1e-12 m/s. */
+static double demi_solved_enough(const dem_world *w) {
+    return 0.05*(double)demi_length(w->desc.gravity)*(double)w->clock.dt +
+        1e-5*w->booked.speed_max + 1e-12;
 }
 /* Sets the solver bodies of a domain to the velocities that they would have after the step without
    contacts, and their inverse inertia tensors. Spins of bodies other than spheres follow from their
@@ -210,8 +261,9 @@ static void demi_impulses_meet(dem_world *w, int d) {
     const size_t stride = (size_t)w->near.stride;
     demi_solver *s = &w->solver;
     demi_meeting *m = s->meetings + s->meeting_first[d];
-    int p, e, i;
-    domain->faced = 0;
+    const demi_kept *last = 0;
+    int p, e, i, run = 0;
+    domain->faced = domain->seated = 0;
     for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
         const size_t at = (size_t)d*stride + (size_t)p;
         const int a = w->near.a[at], b = w->near.b[at];
@@ -223,6 +275,7 @@ static void demi_impulses_meet(dem_world *w, int d) {
             !demi_joined(w, a, b, -1)) {
             m->a = a;
             m->b = b;
+            m->same = 0;
             m++->home = p;
             continue;
         }
@@ -238,8 +291,12 @@ static void demi_impulses_meet(dem_world *w, int d) {
             s->movers[k->a].inv + (k->b >= 0 ? s->movers[k->b].inv : 0) > 0) {
             m->a = k->a;
             m->b = k->b >= 0 ? k->b : w->bodies.count + w->kept_first[d] + i;
+            m->same = last && last->a == k->a && last->b == k->b && demi_kept_one(w, last, k);
             m++->home = ~i;
+            last = k;
+            run = m[-1].same ? run + 1 : 1;
             domain->faced |= k->corners > 1;
+            domain->seated |= run > 2;
         } else memset(k->memory, 0, sizeof k->memory);
     }
     s->meeting_count[d] = (int)(m - (s->meetings + s->meeting_first[d]));

@@ -276,10 +276,7 @@ static void demi_node_mass(const dem_world *w, int body, double *m) {
         return;
     }
     for (i = 0; i < 3; i++) {
-        const dem_vec3 axis = demi_v(i == 0, i == 1, i == 2);
-        const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
-        const dem_vec3 x = dem_quat_unrotate(q, axis), I = demi_at(w->bodies.moment + 4*body);
-        const dem_vec3 y = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
+        const dem_vec3 y = demi_body_turning(w, body, demi_v(i == 0, i == 1, i == 2));
         const dem_real column[3] = {y.x, y.y, y.z};
         for (k = 0; k < 3; k++) m[6*(3 + k) + 3 + i] = (double)column[k];
     }

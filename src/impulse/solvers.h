@@ -23,32 +23,6 @@
    >>add-solver: a row in demi_solvers and a constant in dem_solver.
    --------------------------------------------------------------------------------------------- */
 
-/* Returns the velocity of b relative to a at the contact, m/s, with the impulses found so far. */
-DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impulse *c, int shaped) {
-    const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
-    const dem_vec3 wa = demi_at(a->w), wb = demi_at(b->w);
-    const dem_vec3 v = demi_sub(demi_at(b->v), demi_at(a->v));
-    if (shaped) {
-        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
-        const dem_vec3 vb = b->inv > 0 ? demi_add(v, demi_cross(wb, arms[1])) : v;
-        return demi_sub(vb, demi_cross(wa, arms[0]));
-    }
-    return demi_sub(v, demi_cross(demi_add(demi_scale(wa, c->reach_a), demi_scale(wb, c->reach_b)),
-                                  c->normal));
-}
-/* Applies an impulse p, N s, to body b and the opposite to body a. */
-DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
-                                   int shaped) {
-    if (shaped) {
-        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
-        demi_mover_push(s, c->a, demi_scale(p, -1), demi_cross(p, arms[0]), 1);
-        demi_mover_push(s, c->b, p, demi_cross(arms[1], p), 1);
-    } else {
-        const dem_vec3 l = demi_cross(p, c->normal);
-        demi_mover_push(s, c->a, demi_scale(p, -1), demi_scale(l, c->reach_a), 0);
-        demi_mover_push(s, c->b, p, demi_scale(l, c->reach_b), 0);
-    }
-}
 /* Returns t, shortened to the length `most` if it is longer. */
 DEM_INLINE dem_vec3 demi_impulse_cap(dem_vec3 t, dem_real most) {
     const dem_real l2 = demi_dot(t, t);
@@ -240,10 +214,7 @@ DEM_INLINE void demi_contacts_on(const demi_solver *s, int i, int end) {
     dem_vec3 *by = s->vectors + 2*(size_t)i;
     for (; i < end; i++, by += 2) {
         demi_impulse *c = s->contacts + i;
-        const dem_vec3 on = demi_way_on(s, by + 1, *by);
-        const dem_real push = demi_dot(on, c->normal);
-        c->push += push;
-        c->slip = demi_add(c->slip, demi_sub(on, demi_scale(c->normal, push)));
+        demi_impulse_add(c, demi_way_on(s, by + 1, *by));
     }
 }
 /* Adds a change `by` of an impulse (along the normal: change) to the sums of a sweep, and stores
@@ -302,12 +273,6 @@ static void demi_solved_tell(const demi_solver *s, demi_solved *o, demi_run_sums
     o->rms = sqrt((double)sums.squares/DEMI_MAX(s->count, 1));
     if (!o->sweeps) o->first = o->rms;
 }
-/* Returns the allowed rms residual without desc.tolerance: 0.05 g dt + 1e-5 times the largest
-   speed + 1e-12 m/s. */
-static double demi_solved_enough(const dem_world *w) {
-    return 0.05*(double)demi_length(w->desc.gravity)*(double)w->clock.dt +
-        1e-5*w->booked.speed_max + 1e-12;
-}
 /* True if the solution is not converged. With desc.tolerance: the largest residual exceeds it.
    Otherwise: the rms residual exceeds what is allowed, or the largest 30 times that. */
 static int demi_solved_far(const dem_world *w, const demi_solved *o) {
@@ -317,17 +282,18 @@ static int demi_solved_far(const dem_world *w, const demi_solved *o) {
 }
 /* True if sweeps go on: if the solution is not converged and, where bodies lie on faces and there
    is no desc.tolerance, until the rms residual is half of the first and a tenth of what is allowed,
-   or 3e-4 of that. An error acts on the next step like a change of velocity. If a step mends at
+   or 1e-5 of that. An error acts on the next step like a change of velocity. If a step mends at
    least half of the error that it starts with, errors of successive steps do not add up, and towers
    do not sway. */
 static int demi_solved_open(const dem_world *w, const demi_solved *o) {
     const double enough = demi_solved_enough(w), mends = DEMI_MIN(o->first/2, enough/10);
-    const double tiny = 3e-4*enough + (DEMI_SINGLE ? 1e-6 : 0)*w->booked.speed_max;
+    const double tiny = DEMI_SINGLE ? 3e-4*enough + 1e-6*w->booked.speed_max : 1e-5*enough;
     return demi_solved_far(w, o) || (w->solver.faced && !(w->desc.tolerance > 0) &&
                                      o->rms > DEMI_MAX(mends, tiny));
 }
 /* Solves contacts and joints by Gauss-Seidel, in at most `most` sweeps; more if the energy guard of
-   joints requires them. */
+   joints requires them. Solves towers before the first sweep and after it; then after each sweep,
+   as long as that halves the residual, or else after four times as many sweeps as the last time. */
 static demi_solved demi_solve_seidel(dem_world *w, int most) {
     const demi_task kinds[4] = {demi_seidel_spheres, demi_seidel_spheres_convex,
                                 demi_seidel_shapes, demi_seidel_shapes_convex};
@@ -335,12 +301,15 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
     demi_solver *s = &w->solver;
     demi_solved o = {0, 0, 0, 0};
     dem_real last = 0;                          /* squared size of the change of the last sweep */
-    int open;
+    double had = DBL_MAX;                       /* m/s, residual before towers were solved last */
+    int tried = 0, wait = 1;                    /* sweeps before that, and from then to the next */
+    int open, begun = 0;                        /* sweeps before the direction began */
     s->step = 0;
+    if (s->seated) demi_towers_solve(w);
     do {
         demi_run_sums sums;
         dem_real joints;
-        s->sweep = o.sweeps;
+        s->sweep = o.sweeps - begun;
         demi_domains_do(w, demi_movers_on);
         demi_colours_all(w, task);
         if (s->node_count) demi_domains_do(w, demi_movers_swept);
@@ -353,6 +322,12 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
         s->step = open && sums.second >= 0 && sums.first < DEM_R(1.1)*last
             ? DEMI_MIN(sums.first/last, 1) : 0;
         last = sums.first;
+        if (!open || !s->seated) continue;
+        if (o.sweeps == tried + 1) wait = o.rms < had/2 ? 1 : 4*wait;
+        if (o.sweeps < tried + wait) continue;
+        had = o.rms;
+        tried = o.sweeps;
+        if (demi_towers_solve(w)) begun = o.sweeps;
     } while (open || demi_joints_guard(w));
     return o;
 }
@@ -432,9 +407,6 @@ static void demi_impulses_release(dem_world *w, int index) {
 
 /* --- gradients --- */
 
-DEM_INLINE dem_vec3 demi_impulse_vector(const demi_impulse *c) {
-    return demi_add(demi_scale(c->normal, c->push), c->slip);
-}
 DEM_INLINE void demi_impulse_put(demi_impulse *c, dem_vec3 p) {
     c->push = demi_dot(p, c->normal);
     c->slip = demi_sub(p, demi_scale(c->normal, c->push));
