@@ -328,18 +328,43 @@ static double demi_solid_radius(const demi_solid *s) {
         far2 = DEMI_MAX(far2, demi_d3_square(demi_d3_sub(s->corner[i], s->centre)));
     return sqrt(far2);
 }
+/* Returns the width of the slab along n or, if that is larger, along a normal of a face; then n and
+   s are that. EPA may end early where faces touch to round-off, with a direction along which bodies
+   overlap by far more. */
+static double demi_solids_slab_best(const demi_solid *a, const demi_solid *b, demi_d3 *n,
+                                    demi_simplex *s) {
+    double most = demi_solids_slab(a, b, *n);
+    int k, f, best = -1;
+    for (k = 0; k < 2; k++)
+        for (f = 0; f < (k ? b : a)->faces; f++) {
+            const demi_solid *of = k ? b : a;
+            const demi_d3 up = demi_d3_scale(of->face[f].slope, (k ? -1 : 1)*of->face[f].high);
+            const double wide = demi_solids_slab(a, b, up);
+            if (!(wide > most)) continue;
+            most = wide;
+            *n = up;
+            best = f;
+        }
+    if (best < 0) return most;
+    s->count = 1;
+    s->at[0] = demi_lead_along(a, b, demi_d3_scale(*n, -1));
+    s->part[0] = 1;
+    return most;
+}
 /* Returns the gap between the two, m; negative: their penetration depth; above `range` any number
    from there to the gap. n: on entry a direction to start with, or 0; on return the unit normal
    from a to b. s: the corners that define it. */
 static double demi_solids_gap(const demi_solid *a, const demi_solid *b, double range, demi_d3 *n,
                               demi_simplex *s) {
     const double ra = demi_solid_radius(a), rb = demi_solid_radius(b), size = ra + rb;
+    double deep;
     if (demi_solids_apart(a, b, DEMI_MAX(1e-7*DEMI_MIN(ra, rb), 1e-14*size), range, n, s)) {
         const double gap = demi_solids_slab(a, b, *n);
         if (gap > 0) return gap;
     }
     demi_solids_part(a, b, size, n, s);
-    return demi_solids_slab(a, b, *n);
+    deep = -demi_solids_slab(a, b, *n);
+    return deep < 1e-3*size ? -deep : demi_solids_slab_best(a, b, n, s);
 }
 
 /* --- contact manifold --- */
