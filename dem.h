@@ -84,6 +84,7 @@
        >>impulses          rigid grains: the contacts and constraints of a step
        >>joints            hinges, ball joints, motors
        >>joints-solved     all joints at once: trees, loops, the bound on their energy
+       >>towers            all contacts of bodies that rest on faces at once
        >>solvers           iterative solvers for impulses
        >>impulses-told     solved impulses to forces, contact history and energy losses
      scene/ - filling a scene: size distributions, fills, feeds
@@ -600,6 +601,7 @@
                relative to the flow of a cell
      [FEN12]   Feng, Han & Owen, Comput. Methods Appl. Mech. Eng. 205 (2012) 169: a potential of
                the overlap's volume
+     [FEA08]   Featherstone, Rigid Body Dynamics Algorithms, Springer 2008: Newton-Euler along trees
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
      [GJK88]   Gilbert, Johnson & Keerthi, IEEE J. Robot. Autom. 4 (1988) 193: distance of convex
                bodies
@@ -4688,7 +4690,8 @@ typedef struct demi_domain {
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
     int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
     int kept_walls;                /* those with walls */
-    int faced;                     /* impulses: 1 if a contact of polyhedra has several points */
+    /* impulses, 1: a contact of polyhedra has several points; a contact has three or more */
+    int faced, seated;
     int kept_same;                 /* where demi_kept_same starts its search */
     int coefs;                     /* rows in use of w->coefs */
     int touching_first;            /* begin of its segment of w->touching */
@@ -5291,6 +5294,8 @@ struct demi_run_sums;
 struct demi_rod;
 struct demi_joint_node;
 struct demi_link_of;
+struct demi_seat;
+struct demi_tree_body;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* those of work group d begin at meeting_first[d] */
     struct demi_impulse *contacts; /* this and the next three are in the order of colours */
@@ -5313,13 +5318,18 @@ typedef struct demi_solver {
     int32_t *node_of, *rows;       /* node of each body; row of each entry of the factor */
     struct demi_link_of *links;
     double *blocks;                /* x 36: pivots of the factor, and entries below them */
+    struct demi_seat *seats;       /* see >>towers */
+    struct demi_tree_body *trees;  /* one per body */
+    int32_t *treed;                /* bodies that have a tree */
+    int seat_count, treed_count;
     int node_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; range of the colour being swept; its first run */
     int mover_count;               /* of one array of solver bodies */
-    int sweep;                     /* sweeps before this one */
+    int sweep;                     /* sweeps since the direction began */
     int limited;                   /* contacts at their friction limit in the last unsolved step */
     int twisted;                   /* 1: there is rolling or spinning friction */
-    int faced;                     /* 1: some body lies on a face */
+    int faced, seated;             /* 1: some polyhedron lies on a face, or a tower is tall; some
+                                      contact has three points or more */
     int begins[65];                /* first contact of each colour */
     int meeting_first[DEMI_DOMAINS], meeting_count[DEMI_DOMAINS];
     dem_real dt, step;             /* s; step length of some solvers */
@@ -10005,6 +10015,21 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.inserted++;
     w->bodies.balance.present++;
     return (uint32_t)slot;
+}
+/* Returns the largest time step, s, at which polyhedra rest on each other under gravity, or 0 for
+   any: 0.15 sqrt(L/g), where L is the edge of a cube that fits into the circumscribed sphere of the
+   smallest polyhedron. In a longer step bodies fall so far before their contacts act that an arch
+   does not bear its weight. */
+static double demi_rest_limit(const dem_world *w) {
+    const double g = (double)demi_length(w->desc.gravity);
+    double least = DBL_MAX;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) {
+        const demi_shape *shape = demi_shape_of(w, i);
+        if (shape && shape->kind == DEMI_POLYHEDRON && w->bodies.inv_mass[i] > 0)
+            least = DEMI_MIN(least, (double)demi_radius(w, i));
+    }
+    return g > 0 && least < DBL_MAX ? 0.15*sqrt(2*least/(sqrt(3.0)*g)) : 0;
 }
 /* True if a part touches a wall through a tessellation: if the wall's row has no function for the
    two, or one that finds only gaps while springs need pressure. */
@@ -20207,18 +20232,43 @@ static double demi_solid_radius(const demi_solid *s) {
         far2 = DEMI_MAX(far2, demi_d3_square(demi_d3_sub(s->corner[i], s->centre)));
     return sqrt(far2);
 }
+/* Returns the width of the slab along n or, if that is larger, along a normal of a face; then n and
+   s are that. EPA may end early where faces touch to round-off, with a direction along which bodies
+   overlap by far more. */
+static double demi_solids_slab_best(const demi_solid *a, const demi_solid *b, demi_d3 *n,
+                                    demi_simplex *s) {
+    double most = demi_solids_slab(a, b, *n);
+    int k, f, best = -1;
+    for (k = 0; k < 2; k++)
+        for (f = 0; f < (k ? b : a)->faces; f++) {
+            const demi_solid *of = k ? b : a;
+            const demi_d3 up = demi_d3_scale(of->face[f].slope, (k ? -1 : 1)*of->face[f].high);
+            const double wide = demi_solids_slab(a, b, up);
+            if (!(wide > most)) continue;
+            most = wide;
+            *n = up;
+            best = f;
+        }
+    if (best < 0) return most;
+    s->count = 1;
+    s->at[0] = demi_lead_along(a, b, demi_d3_scale(*n, -1));
+    s->part[0] = 1;
+    return most;
+}
 /* Returns the gap between the two, m; negative: their penetration depth; above `range` any number
    from there to the gap. n: on entry a direction to start with, or 0; on return the unit normal
    from a to b. s: the corners that define it. */
 static double demi_solids_gap(const demi_solid *a, const demi_solid *b, double range, demi_d3 *n,
                               demi_simplex *s) {
     const double ra = demi_solid_radius(a), rb = demi_solid_radius(b), size = ra + rb;
+    double deep;
     if (demi_solids_apart(a, b, DEMI_MAX(1e-7*DEMI_MIN(ra, rb), 1e-14*size), range, n, s)) {
         const double gap = demi_solids_slab(a, b, *n);
         if (gap > 0) return gap;
     }
     demi_solids_part(a, b, size, n, s);
-    return demi_solids_slab(a, b, *n);
+    deep = -demi_solids_slab(a, b, *n);
+    return deep < 1e-3*size ? -deep : demi_solids_slab_best(a, b, n, s);
 }
 
 /* --- contact manifold --- */
@@ -25929,6 +25979,7 @@ typedef struct demi_meeting {
     int32_t home;                  /* entry of the pruned neighbour list, or ~entry of the domain's
                                       persistent contacts */
     int32_t at;                    /* index in demi_solver.contacts; before that is known: colour */
+    int32_t same;                  /* 1: with the body or joined walls of the constraint before */
 } demi_meeting;
 /* A contact constraint, second pass: what sweeps read and write, in two cache lines. Impulses are
    those on b; a gets the opposite. */
@@ -25947,6 +25998,7 @@ typedef struct demi_beside {
        kg, effective mass without rotation */
     dem_real gap, lift, pull, mass;
     dem_real turns;                /* m/s, <= 0: part of bias, see demi_impulse_turns */
+    int holds;                     /* 1: of a seat of >>towers, and holds */
     int bounces;                   /* 1: bias is that of restitution */
     dem_real leaves;               /* m/s: of bodies that separate, the speed of approach at which
                                       a push does no work; else 0 */
@@ -25989,6 +26041,55 @@ DEM_INLINE void demi_mover_push(const demi_solver *s, int mover, dem_vec3 p, dem
     w = demi_mover_turn(s, mover, l, shaped);
     m->v[0] += p.x*m->inv; m->v[1] += p.y*m->inv; m->v[2] += p.z*m->inv;
     m->w[0] += w.x; m->w[1] += w.y; m->w[2] += w.z;
+}
+/* Returns the velocity of b relative to a at the contact, m/s, with the impulses found so far. */
+DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impulse *c, int shaped) {
+    const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
+    const dem_vec3 wa = demi_at(a->w), wb = demi_at(b->w);
+    const dem_vec3 v = demi_sub(demi_at(b->v), demi_at(a->v));
+    if (shaped) {
+        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
+        const dem_vec3 vb = b->inv > 0 ? demi_add(v, demi_cross(wb, arms[1])) : v;
+        return demi_sub(vb, demi_cross(wa, arms[0]));
+    }
+    return demi_sub(v, demi_cross(demi_add(demi_scale(wa, c->reach_a), demi_scale(wb, c->reach_b)),
+                                  c->normal));
+}
+/* Applies an impulse p, N s, to body b and the opposite to body a. */
+DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
+                                   int shaped) {
+    if (shaped) {
+        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
+        demi_mover_push(s, c->a, demi_scale(p, -1), demi_cross(p, arms[0]), 1);
+        demi_mover_push(s, c->b, p, demi_cross(arms[1], p), 1);
+    } else {
+        const dem_vec3 l = demi_cross(p, c->normal);
+        demi_mover_push(s, c->a, demi_scale(p, -1), demi_scale(l, c->reach_a), 0);
+        demi_mover_push(s, c->b, p, demi_scale(l, c->reach_b), 0);
+    }
+}
+/* Returns the impulse of a contact on b, N s. */
+DEM_INLINE dem_vec3 demi_impulse_vector(const demi_impulse *c) {
+    return demi_add(demi_scale(c->normal, c->push), c->slip);
+}
+/* Adds a change to an impulse. */
+DEM_INLINE void demi_impulse_add(demi_impulse *c, dem_vec3 by) {
+    const dem_real push = demi_dot(by, c->normal);
+    c->push += push;
+    c->slip = demi_add(c->slip, demi_sub(by, demi_scale(c->normal, push)));
+}
+/* Returns the angular momentum, N m s, of body i with spin w, rad/s. */
+static dem_vec3 demi_body_turning(const dem_world *world, int i, dem_vec3 w) {
+    const dem_quat q = demi_quat_at(world->bodies.orient + 4*i);
+    const dem_vec3 I = demi_at(world->bodies.moment + 4*i), x = dem_quat_unrotate(q, w);
+    if (!demi_shape_of(world, i)) return demi_scale(w, 1/world->bodies.inv_inertia[i]);
+    return dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
+}
+/* Returns the allowed rms residual without desc.tolerance: 0.05 g dt + 1e-5 times the largest
+   speed + 1e-12 m/s. */
+static double demi_solved_enough(const dem_world *w) {
+    return 0.05*(double)demi_length(w->desc.gravity)*(double)w->clock.dt +
+        1e-5*w->booked.speed_max + 1e-12;
 }
 /* Sets the solver bodies of a domain to the velocities that they would have after the step without
    contacts, and their inverse inertia tensors. Spins of bodies other than spheres follow from their
@@ -26105,8 +26206,9 @@ static void demi_impulses_meet(dem_world *w, int d) {
     const size_t stride = (size_t)w->near.stride;
     demi_solver *s = &w->solver;
     demi_meeting *m = s->meetings + s->meeting_first[d];
-    int p, e, i;
-    domain->faced = 0;
+    const demi_kept *last = 0;
+    int p, e, i, run = 0;
+    domain->faced = domain->seated = 0;
     for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
         const size_t at = (size_t)d*stride + (size_t)p;
         const int a = w->near.a[at], b = w->near.b[at];
@@ -26118,6 +26220,7 @@ static void demi_impulses_meet(dem_world *w, int d) {
             !demi_joined(w, a, b, -1)) {
             m->a = a;
             m->b = b;
+            m->same = 0;
             m++->home = p;
             continue;
         }
@@ -26133,8 +26236,12 @@ static void demi_impulses_meet(dem_world *w, int d) {
             s->movers[k->a].inv + (k->b >= 0 ? s->movers[k->b].inv : 0) > 0) {
             m->a = k->a;
             m->b = k->b >= 0 ? k->b : w->bodies.count + w->kept_first[d] + i;
+            m->same = last && last->a == k->a && last->b == k->b && demi_kept_one(w, last, k);
             m++->home = ~i;
+            last = k;
+            run = m[-1].same ? run + 1 : 1;
             domain->faced |= k->corners > 1;
+            domain->seated |= run > 2;
         } else memset(k->memory, 0, sizeof k->memory);
     }
     s->meeting_count[d] = (int)(m - (s->meetings + s->meeting_first[d]));
@@ -26907,10 +27014,7 @@ static void demi_node_mass(const dem_world *w, int body, double *m) {
         return;
     }
     for (i = 0; i < 3; i++) {
-        const dem_vec3 axis = demi_v(i == 0, i == 1, i == 2);
-        const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
-        const dem_vec3 x = dem_quat_unrotate(q, axis), I = demi_at(w->bodies.moment + 4*body);
-        const dem_vec3 y = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
+        const dem_vec3 y = demi_body_turning(w, body, demi_v(i == 0, i == 1, i == 2));
         const dem_real column[3] = {y.x, y.y, y.z};
         for (k = 0; k < 3; k++) m[6*(3 + k) + 3 + i] = (double)column[k];
     }
@@ -27503,6 +27607,297 @@ static void demi_joints_tell(dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>towers
+   Direct solution of the contact constraints of towers, which are polyhedra and clusters that rest
+   on three or more points of each other. A sweep of >>solvers carries a change of velocity a few
+   bodies further, and a tower bends so easily that sweeps alone need a number that grows with the
+   square of its height.
+   A seat is a contact that three or more points hold, which push, stick and are not on one line.
+   Its two bodies move together, so along a tree of seats the impulses follow from momenta alone
+   (recursive Newton-Euler algorithm [FEA08]): from walls and fixed bodies upwards, each body gets
+   the velocity at which the points of its seat are at rest (least squares); from the leaves
+   downwards, each seat gets the momentum that the bodies beyond it need, and divides it among its
+   points like a rigid face. Where a point would pull or slide, the whole tree takes the part of
+   this step that does not yet make it.
+   A step takes a tree to the minimum of the energy that sweeps reduce, too, over the impulses of
+   its seats, or a part of the way. So it never increases that energy. Trees end at bodies that no
+   seat connects to a wall or a fixed body, and in planar worlds there are none.
+   Owns seats and trees of w->solver; changes impulses and solver bodies.
+   Tests: tests/impulse/test_towers.c, tests/hard/hard_rest.c.
+   --------------------------------------------------------------------------------------------- */
+
+/* A seat of two bodies, or of a body and a wall. */
+typedef struct demi_seat {
+    int32_t ends[2], next[2];      /* a and b; -1: a wall or prescribed motion. Next seat of each */
+    int32_t first, last;           /* its constraints: entries of demi_solver.meetings */
+    int32_t points;                /* number of points that hold */
+    dem_vec3 arm[2];               /* m, from the centres of a and b to the mean of the points */
+    dem_real per[6];               /* 1/m2, inverse of their second moment: xx yy zz xy xz yz */
+    dem_vec3 push, turn;           /* an impulse on b, see demi_seat_part */
+} demi_seat;
+/* A body with seats. */
+typedef struct demi_tree_body {
+    int32_t seats, root;           /* first seat; root of its tree, which rests on a wall or a fixed
+                                      body; -1: none */
+    int32_t seat, end, level;      /* seat towards the root; which end of it the body is; number of
+                                      seats down to the wall or fixed body */
+    dem_vec3 v, w;                 /* m/s, rad/s: change of velocity */
+    dem_vec3 push, turn;           /* N s, N m s about the centre: momentum that this body and the
+                                      bodies beyond it need */
+    dem_real part;                 /* of a root: part of the step that its tree takes */
+} demi_tree_body;
+
+/* Trees with more levels than this are tall: residuals must be small (demi_solved_open). */
+enum { DEMI_TALL = 3 };
+/* True if a point holds: it is rigid, pushes and sticks. */
+static int demi_point_holds(const demi_impulse *c) {
+    const dem_real most = c->mu*c->push*DEM_R(0.999);
+    return c->push > 0 && c->gn*c->per_n > DEM_R(0.999999) &&
+        demi_dot(c->slip, c->slip) < most*most;
+}
+/* Returns the largest part, up to 1, of a change `by` that leaves an impulse in its cone. */
+static dem_real demi_point_part(const demi_impulse *c, dem_vec3 by) {
+    const dem_real push = demi_dot(by, c->normal), mu2 = c->mu*c->mu;
+    const dem_vec3 slip = demi_sub(by, demi_scale(c->normal, push));
+    /* |slip + x by| = mu (push + x by): a x2 + 2 b x + q = 0, where q < 0 */
+    const dem_real a = demi_dot(slip, slip) - mu2*push*push;
+    const dem_real b = demi_dot(slip, c->slip) - mu2*push*c->push;
+    const dem_real q = demi_dot(c->slip, c->slip) - mu2*c->push*c->push, root = b*b - a*q;
+    const dem_real most = push < 0 ? DEMI_MIN(1, -c->push/push) : 1;
+    const dem_real sum = root > 0 ? b + DEMI_SQRT(root) : 0;
+    return sum > 0 ? DEMI_MIN(most, -q/sum) : most;
+}
+/* Adds a point at r to the tensor of second moments, the sum of r2 - r r'. */
+static void demi_moment_add(dem_real *t, dem_vec3 r) {
+    t[0] += r.y*r.y + r.z*r.z;
+    t[1] += r.x*r.x + r.z*r.z;
+    t[2] += r.x*r.x + r.y*r.y;
+    t[3] -= r.x*r.y;
+    t[4] -= r.x*r.z;
+    t[5] -= r.y*r.z;
+}
+/* Inverts such a tensor in place. Returns 0 if the points are nearly on one line. */
+static int demi_moment_invert(dem_real *t) {
+    const dem_real xx = t[1]*t[2] - t[5]*t[5], xy = t[4]*t[5] - t[3]*t[2];
+    const dem_real xz = t[3]*t[5] - t[4]*t[1], trace = t[0] + t[1] + t[2];
+    const dem_real yy = t[0]*t[2] - t[4]*t[4], zz = t[0]*t[1] - t[3]*t[3];
+    const dem_real yz = t[3]*t[4] - t[0]*t[5], det = t[0]*xx + t[3]*xy + t[4]*xz;
+    if (!(det > DEM_R(1e-4)*trace*trace*trace)) return 0;
+    t[0] = xx/det; t[1] = yy/det; t[2] = zz/det;
+    t[3] = xy/det; t[4] = xz/det; t[5] = yz/det;
+    return 1;
+}
+
+/* --- seats --- */
+
+/* Returns the vector from the mean point of a seat to the point of contact `at`, m. */
+static dem_vec3 demi_seat_to(const demi_solver *s, const demi_seat *seat, int at) {
+    return demi_sub(s->arms[2*at], seat->arm[0]);
+}
+/* Divides an impulse p, N s, with the moment l about the mean point, N m s, among the points of a
+   seat: those shares with the least sum of squares. */
+static void demi_seat_divide(demi_seat *seat, dem_vec3 p, dem_vec3 l) {
+    seat->push = demi_scale(p, 1/(dem_real)seat->points);
+    seat->turn = demi_tensor_times(seat->per, l);
+}
+/* Returns the share of a point, N s. */
+static dem_vec3 demi_seat_part(const demi_solver *s, const demi_seat *seat, int at) {
+    return demi_add(seat->push, demi_cross(seat->turn, demi_seat_to(s, seat, at)));
+}
+/* Divides the present impulse of a seat among its points again, half of the way that their cones
+   allow. That leaves sum and moment, and so all velocities, as they are. Otherwise points whose
+   differences change no velocity would drift to the limits of their cones. */
+static void demi_seat_even(const dem_world *w, demi_seat *seat) {
+    const demi_solver *s = &w->solver;
+    const dem_real slack = (dem_real)(3e-4*demi_solved_enough(w));
+    dem_vec3 p = demi_v(0, 0, 0), l = p;
+    dem_real part = 1;
+    int i;
+    for (i = seat->first; i < seat->last; i++) {
+        const int at = s->meetings[i].at;
+        const demi_impulse *c = s->contacts + at;
+        if (!s->beside[at].holds) continue;
+        if (DEMI_ABS(c->bias) > slack) return;  /* it would not leave the energy as it is */
+        p = demi_add(p, demi_impulse_vector(c));
+        l = demi_add(l, demi_cross(demi_seat_to(s, seat, at), demi_impulse_vector(c)));
+    }
+    demi_seat_divide(seat, p, l);
+    for (i = seat->first; i < seat->last; i++) {
+        const int at = s->meetings[i].at;
+        const demi_impulse *c = s->contacts + at;
+        if (s->beside[at].holds)
+            part = DEMI_MIN(part, demi_point_part(c, demi_sub(demi_seat_part(s, seat, at),
+                                                              demi_impulse_vector(c))));
+    }
+    for (i = seat->first; i < seat->last; i++) {
+        const int at = s->meetings[i].at;
+        demi_impulse *c = s->contacts + at;
+        if (s->beside[at].holds)
+            demi_impulse_add(c, demi_scale(demi_sub(demi_seat_part(s, seat, at),
+                                                    demi_impulse_vector(c)), part/2));
+    }
+}
+/* Sets up a seat of the constraints `first` to `last` - 1. Returns 0 if it does not hold. */
+static int demi_seat_lay(const dem_world *w, demi_seat *seat, int first, int last) {
+    const demi_solver *s = &w->solver;
+    const demi_meeting *m = s->meetings;
+    int i, k;
+    memset(seat, 0, sizeof *seat);
+    seat->first = first;
+    seat->last = last;
+    for (i = first; i < last; i++) {
+        s->beside[m[i].at].holds = demi_point_holds(s->contacts + m[i].at);
+        if (!s->beside[m[i].at].holds) continue;
+        seat->points++;
+        for (k = 0; k < 2; k++)
+            seat->arm[k] = demi_add(seat->arm[k], s->arms[2*m[i].at + k]);
+    }
+    if (seat->points < 3) return 0;
+    for (k = 0; k < 2; k++) seat->arm[k] = demi_scale(seat->arm[k], 1/(dem_real)seat->points);
+    for (i = first; i < last; i++)
+        if (s->beside[m[i].at].holds)
+            demi_moment_add(seat->per, demi_seat_to(s, seat, m[i].at));
+    seat->ends[0] = s->movers[m[first].a].inv > 0 ? m[first].a : -1;
+    seat->ends[1] = m[first].b < w->bodies.count && s->movers[m[first].b].inv > 0 ? m[first].b : -1;
+    return demi_moment_invert(seat->per);
+}
+/* Finds all seats, and links those of each body. */
+static void demi_seats_find(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int d, i, next, e;
+    s->seat_count = 0;
+    for (i = 0; i < w->bodies.count; i++) s->trees[i].seats = s->trees[i].root = -1;
+    for (d = 0; d < w->domain_count; d++) {
+        const int end = s->meeting_first[d] + s->meeting_count[d];
+        for (i = s->meeting_first[d]; i < end; i = next) {
+            demi_seat *seat = s->seats + s->seat_count;
+            for (next = i + 1; next < end && s->meetings[next].same; next++) continue;
+            if (next - i < 3 || !demi_seat_lay(w, seat, i, next)) continue;
+            demi_seat_even(w, seat);
+            for (e = 0; e < 2; e++) {
+                if (seat->ends[e] < 0) continue;
+                seat->next[e] = s->trees[seat->ends[e]].seats;
+                s->trees[seat->ends[e]].seats = s->seat_count;
+            }
+            s->seat_count++;
+        }
+    }
+}
+
+/* --- trees --- */
+
+/* Adds the body at one end of a seat to the tree of `root`, unless it has one; root -1: as a root
+   itself. */
+static void demi_tree_join(demi_solver *s, int seat, int end, int root) {
+    const int body = s->seats[seat].ends[end];
+    demi_tree_body *t = s->trees + body;
+    if (body < 0 || t->root >= 0) return;
+    t->seat = seat;
+    t->end = end;
+    t->root = root < 0 ? body : root;
+    t->level = root < 0 ? 1 : s->trees[s->seats[seat].ends[!end]].level + 1;
+    t->part = 1;
+    s->treed[s->treed_count++] = body;
+}
+/* Orders the bodies of all trees by their distance from the root. */
+static void demi_trees_order(demi_solver *s) {
+    int i, k, e;
+    s->treed_count = 0;
+    for (i = 0; i < s->seat_count; i++)
+        for (e = 0; e < 2; e++)
+            if (s->seats[i].ends[!e] < 0) demi_tree_join(s, i, e, -1);
+    for (k = 0; k < s->treed_count; k++)
+        for (i = s->trees[s->treed[k]].seats; i >= 0; i = s->seats[i].next[e]) {
+            e = s->seats[i].ends[0] != s->treed[k];
+            demi_tree_join(s, i, !e, s->trees[s->treed[k]].root);
+        }
+}
+/* Computes the change of velocity at which the points of a body's seat are at rest, given that of
+   the body at its other end; and the momentum that it takes. */
+static void demi_tree_rise(const dem_world *w, int body) {
+    const demi_solver *s = &w->solver;
+    demi_tree_body *t = s->trees + body;
+    const demi_seat *seat = s->seats + t->seat;
+    const int from = seat->ends[!t->end];
+    const dem_real sign = t->end ? 1 : -1;
+    dem_vec3 v = demi_v(0, 0, 0), spin = v;
+    int i;
+    for (i = seat->first; i < seat->last; i++) {
+        const int at = s->meetings[i].at;
+        const demi_impulse *c = s->contacts + at;
+        dem_vec3 u;
+        if (!s->beside[at].holds) continue;
+        u = demi_add(demi_impulse_velocity(s, c, 1), demi_scale(c->normal, c->bias));
+        v = demi_sub(v, u);
+        spin = demi_sub(spin, demi_cross(demi_seat_to(s, seat, at), u));
+    }
+    v = demi_scale(v, sign/(dem_real)seat->points);
+    t->w = demi_scale(demi_tensor_times(seat->per, spin), sign);
+    if (from >= 0) {
+        const demi_tree_body *f = s->trees + from;
+        t->w = demi_add(t->w, f->w);
+        v = demi_add(v, demi_add(f->v, demi_cross(f->w, seat->arm[!t->end])));
+    }
+    t->v = demi_sub(v, demi_cross(t->w, seat->arm[t->end]));
+    t->push = demi_scale(t->v, 1/s->movers[body].inv);
+    t->turn = demi_body_turning(w, body, t->w);
+}
+/* Gives the seat of a body the momentum that this body and all beyond it need, and adds it to the
+   body at the other end. */
+static void demi_tree_load(demi_solver *s, int body) {
+    const demi_tree_body *t = s->trees + body;
+    demi_seat *seat = s->seats + t->seat;
+    const int from = seat->ends[!t->end];
+    const dem_vec3 turn = demi_sub(t->turn, demi_cross(seat->arm[t->end], t->push));
+    const dem_real sign = t->end ? 1 : -1;
+    demi_seat_divide(seat, demi_scale(t->push, sign), demi_scale(turn, sign));
+    if (from < 0) return;
+    s->trees[from].push = demi_add(s->trees[from].push, t->push);
+    s->trees[from].turn = demi_add(s->trees[from].turn,
+                                   demi_add(turn, demi_cross(seat->arm[!t->end], t->push)));
+}
+/* Limits the step of a body's tree to what the points of its seat allow. */
+static void demi_tree_limit(demi_solver *s, int body) {
+    const demi_seat *seat = s->seats + s->trees[body].seat;
+    dem_real *part = &s->trees[s->trees[body].root].part;
+    int i;
+    for (i = seat->first; i < seat->last; i++) {
+        const int at = s->meetings[i].at;
+        if (s->beside[at].holds)
+            *part = DEMI_MIN(*part, demi_point_part(s->contacts + at, demi_seat_part(s, seat, at)));
+    }
+}
+/* Takes the step of a body and its seat. */
+static void demi_tree_go(demi_solver *s, int body) {
+    const demi_tree_body *t = s->trees + body;
+    const demi_seat *seat = s->seats + t->seat;
+    const dem_real part = s->trees[t->root].part;
+    demi_mover *m = s->movers + body;
+    int i;
+    for (i = seat->first; i < seat->last; i++) {
+        const int at = s->meetings[i].at;
+        if (s->beside[at].holds)
+            demi_impulse_add(s->contacts + at, demi_scale(demi_seat_part(s, seat, at), part));
+    }
+    demi_put(m->v, demi_add(demi_at(m->v), demi_scale(t->v, part)));
+    demi_put(m->w, demi_add(demi_at(m->w), demi_scale(t->w, part)));
+}
+/* Solves all towers. Returns 0 if there are none. */
+static int demi_towers_solve(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int k;
+    if (w->desc.planar || !w->bodies.shaped) return 0;
+    demi_seats_find(w);
+    demi_trees_order(s);
+    for (k = 0; k < s->treed_count; k++) demi_tree_rise(w, s->treed[k]);
+    for (k = s->treed_count; k-- > 0; ) demi_tree_load(s, s->treed[k]);
+    for (k = 0; k < s->treed_count; k++) demi_tree_limit(s, s->treed[k]);
+    for (k = 0; k < s->treed_count; k++) demi_tree_go(s, s->treed[k]);
+    s->faced |= s->treed_count > 0 && s->trees[s->treed[s->treed_count - 1]].level > DEMI_TALL;
+    return s->treed_count > 0;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>solvers
    Iterative solvers for the contact constraints of >>impulses (sequential impulses and its
    competitors). Velocities are in the solver bodies, and a solver applies every change of an
@@ -27527,32 +27922,6 @@ static void demi_joints_tell(dem_world *w) {
    >>add-solver: a row in demi_solvers and a constant in dem_solver.
    --------------------------------------------------------------------------------------------- */
 
-/* Returns the velocity of b relative to a at the contact, m/s, with the impulses found so far. */
-DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impulse *c, int shaped) {
-    const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
-    const dem_vec3 wa = demi_at(a->w), wb = demi_at(b->w);
-    const dem_vec3 v = demi_sub(demi_at(b->v), demi_at(a->v));
-    if (shaped) {
-        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
-        const dem_vec3 vb = b->inv > 0 ? demi_add(v, demi_cross(wb, arms[1])) : v;
-        return demi_sub(vb, demi_cross(wa, arms[0]));
-    }
-    return demi_sub(v, demi_cross(demi_add(demi_scale(wa, c->reach_a), demi_scale(wb, c->reach_b)),
-                                  c->normal));
-}
-/* Applies an impulse p, N s, to body b and the opposite to body a. */
-DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
-                                   int shaped) {
-    if (shaped) {
-        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
-        demi_mover_push(s, c->a, demi_scale(p, -1), demi_cross(p, arms[0]), 1);
-        demi_mover_push(s, c->b, p, demi_cross(arms[1], p), 1);
-    } else {
-        const dem_vec3 l = demi_cross(p, c->normal);
-        demi_mover_push(s, c->a, demi_scale(p, -1), demi_scale(l, c->reach_a), 0);
-        demi_mover_push(s, c->b, p, demi_scale(l, c->reach_b), 0);
-    }
-}
 /* Returns t, shortened to the length `most` if it is longer. */
 DEM_INLINE dem_vec3 demi_impulse_cap(dem_vec3 t, dem_real most) {
     const dem_real l2 = demi_dot(t, t);
@@ -27744,10 +28113,7 @@ DEM_INLINE void demi_contacts_on(const demi_solver *s, int i, int end) {
     dem_vec3 *by = s->vectors + 2*(size_t)i;
     for (; i < end; i++, by += 2) {
         demi_impulse *c = s->contacts + i;
-        const dem_vec3 on = demi_way_on(s, by + 1, *by);
-        const dem_real push = demi_dot(on, c->normal);
-        c->push += push;
-        c->slip = demi_add(c->slip, demi_sub(on, demi_scale(c->normal, push)));
+        demi_impulse_add(c, demi_way_on(s, by + 1, *by));
     }
 }
 /* Adds a change `by` of an impulse (along the normal: change) to the sums of a sweep, and stores
@@ -27806,12 +28172,6 @@ static void demi_solved_tell(const demi_solver *s, demi_solved *o, demi_run_sums
     o->rms = sqrt((double)sums.squares/DEMI_MAX(s->count, 1));
     if (!o->sweeps) o->first = o->rms;
 }
-/* Returns the allowed rms residual without desc.tolerance: 0.05 g dt + 1e-5 times the largest
-   speed + 1e-12 m/s. */
-static double demi_solved_enough(const dem_world *w) {
-    return 0.05*(double)demi_length(w->desc.gravity)*(double)w->clock.dt +
-        1e-5*w->booked.speed_max + 1e-12;
-}
 /* True if the solution is not converged. With desc.tolerance: the largest residual exceeds it.
    Otherwise: the rms residual exceeds what is allowed, or the largest 30 times that. */
 static int demi_solved_far(const dem_world *w, const demi_solved *o) {
@@ -27821,17 +28181,18 @@ static int demi_solved_far(const dem_world *w, const demi_solved *o) {
 }
 /* True if sweeps go on: if the solution is not converged and, where bodies lie on faces and there
    is no desc.tolerance, until the rms residual is half of the first and a tenth of what is allowed,
-   or 3e-4 of that. An error acts on the next step like a change of velocity. If a step mends at
+   or 1e-5 of that. An error acts on the next step like a change of velocity. If a step mends at
    least half of the error that it starts with, errors of successive steps do not add up, and towers
    do not sway. */
 static int demi_solved_open(const dem_world *w, const demi_solved *o) {
     const double enough = demi_solved_enough(w), mends = DEMI_MIN(o->first/2, enough/10);
-    const double tiny = 3e-4*enough + (DEMI_SINGLE ? 1e-6 : 0)*w->booked.speed_max;
+    const double tiny = DEMI_SINGLE ? 3e-4*enough + 1e-6*w->booked.speed_max : 1e-5*enough;
     return demi_solved_far(w, o) || (w->solver.faced && !(w->desc.tolerance > 0) &&
                                      o->rms > DEMI_MAX(mends, tiny));
 }
 /* Solves contacts and joints by Gauss-Seidel, in at most `most` sweeps; more if the energy guard of
-   joints requires them. */
+   joints requires them. Solves towers before the first sweep and after it; then after each sweep,
+   as long as that halves the residual, or else after four times as many sweeps as the last time. */
 static demi_solved demi_solve_seidel(dem_world *w, int most) {
     const demi_task kinds[4] = {demi_seidel_spheres, demi_seidel_spheres_convex,
                                 demi_seidel_shapes, demi_seidel_shapes_convex};
@@ -27839,12 +28200,15 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
     demi_solver *s = &w->solver;
     demi_solved o = {0, 0, 0, 0};
     dem_real last = 0;                          /* squared size of the change of the last sweep */
-    int open;
+    double had = DBL_MAX;                       /* m/s, residual before towers were solved last */
+    int tried = 0, wait = 1;                    /* sweeps before that, and from then to the next */
+    int open, begun = 0;                        /* sweeps before the direction began */
     s->step = 0;
+    if (s->seated) demi_towers_solve(w);
     do {
         demi_run_sums sums;
         dem_real joints;
-        s->sweep = o.sweeps;
+        s->sweep = o.sweeps - begun;
         demi_domains_do(w, demi_movers_on);
         demi_colours_all(w, task);
         if (s->node_count) demi_domains_do(w, demi_movers_swept);
@@ -27857,6 +28221,12 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
         s->step = open && sums.second >= 0 && sums.first < DEM_R(1.1)*last
             ? DEMI_MIN(sums.first/last, 1) : 0;
         last = sums.first;
+        if (!open || !s->seated) continue;
+        if (o.sweeps == tried + 1) wait = o.rms < had/2 ? 1 : 4*wait;
+        if (o.sweeps < tried + wait) continue;
+        had = o.rms;
+        tried = o.sweeps;
+        if (demi_towers_solve(w)) begun = o.sweeps;
     } while (open || demi_joints_guard(w));
     return o;
 }
@@ -27936,9 +28306,6 @@ static void demi_impulses_release(dem_world *w, int index) {
 
 /* --- gradients --- */
 
-DEM_INLINE dem_vec3 demi_impulse_vector(const demi_impulse *c) {
-    return demi_add(demi_scale(c->normal, c->push), c->slip);
-}
 DEM_INLINE void demi_impulse_put(demi_impulse *c, dem_vec3 p) {
     c->push = demi_dot(p, c->normal);
     c->slip = demi_sub(p, demi_scale(c->normal, c->push));
@@ -28176,10 +28543,16 @@ enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };
    w->booked.
    --------------------------------------------------------------------------------------------- */
 
-/* Sets the time step to desc.dt: rigid contacts have no duration that would limit it. Fails if the
-   solver does not support the rolling or spinning friction or the joints of the scene. */
+/* Sets the time step to desc.dt: rigid contacts have no duration that would limit it. Fails if
+   polyhedra would not rest with it, or if the solver does not support the rolling or spinning
+   friction or the joints of the scene. */
 static dem_result demi_impulses_settle(dem_world *w) {
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
+    const double most = w->desc.allow_large_dt ? 0 : demi_rest_limit(w);
+    if (most > 0 && (double)w->desc.dt > most)
+        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most %.3g "
+                         "s for polyhedra as small as these to rest on each other under gravity; "
+                         "use at most %.2g s", (double)w->desc.dt, most, most/1.5);
     if (demi_impulses_twist(w) && !solver->moments)
         return demi_refuse(w, "dem_world_step", "materials have rolling or spinning friction, "
                            "which the solver %s does not support; leave desc.solver at "
@@ -28213,7 +28586,10 @@ static int demi_impulses_room(dem_world *w) {
         DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
         (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
         DEMI_GROW(w, s->vectors, (size_t)solver->vectors*n) && DEMI_GROW(w, s->degrees, bodies) &&
-        (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
+        (!w->bodies.shaped ||
+         (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies) &&
+          DEMI_GROW(w, s->seats, n/3 + 1) && DEMI_GROW(w, s->trees, bodies) &&
+          DEMI_GROW(w, s->treed, bodies)));
 }
 /* Correction of the remaining overlap. Lifts are pseudo-velocities, m/s: they displace bodies in
    this step and are then discarded, so they add no kinetic energy. They do not rotate bodies. A
@@ -28277,10 +28653,7 @@ static void demi_movers_force(dem_world *w, int d) {
                 (double)torque[k]*(double)(w->bodies.spin[4*i + k] + m->w[k]);
         for (k = 0; k < 3; k++) b.f[k] = ((m->v[k] - b.v[k])*per - b.g[k])/m->inv;
         if (w->bodies.shaped && w->bodies.shape[i]) {
-            const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
-            const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
-            const dem_vec3 local = dem_quat_unrotate(q, demi_at(m->w));
-            const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*local.x, I.y*local.y, I.z*local.z));
+            const dem_vec3 L = demi_body_turning(w, i, demi_at(m->w));
             if (demi_mover_free(w, i)) continue;
             demi_put(torque, demi_scale(demi_sub(L, demi_at(w->bodies.angular + 4*i)), per));
         } else
@@ -28450,15 +28823,17 @@ static void demi_impulses(dem_world *w) {
     demi_domains_do(w, demi_movers_lay);
     demi_joints_lay(w);
     demi_domains_do(w, demi_impulses_meet);
-    for (d = s->faced = 0; d < w->domain_count; d++)
+    for (d = s->faced = s->seated = 0; d < w->domain_count; d++) {
         s->faced |= w->domains[d].faced && !demi_solvers[w->desc.solver].parts;
+        s->seated |= w->domains[d].seated;
+    }
     demi_impulses_colour(w);
     demi_domains_do(w, demi_impulses_lay);
     if (s->count || w->joint_count) {
         demi_colours_all(w, demi_impulses_warm);
         demi_joints_warm(w);
         solved = demi_solvers[w->desc.solver].solve(w, most);
-        s->faced = 0;                           /* what follows begins with a small residual */
+        s->faced = s->seated = 0;               /* what follows begins with a small residual */
         for (i = 0; i < DEMI_TAMINGS &&
                     demi_impulses_tame(w, solved.worst, i == DEMI_TAMINGS - 1); i++)
             solved = demi_solvers[w->desc.solver].solve(w, most);
@@ -31673,10 +32048,16 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
 }
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     if (demi_null_look(w, __func__, advice, "advice")) return DEM_ERROR_ARGUMENT;
-    if (!demi_response_is(w, DEMI_LASTING))
+    if (!demi_response_is(w, DEMI_LASTING)) {
+        const double rests = demi_rest_limit(w)/1.5;
+        char most[96] = "";
+        if (rests > 0)
+            demi_words(most, sizeof most, ", and at most %.2g s, so that polyhedra rest on each "
+                       "other", rests);
         return demi_refuse(w, __func__, "contacts of this world are impulses, which "
                            "have no contact time; choose a step in which grains move by less than "
-                           "a tenth of their radius");
+                           "a tenth of their radius%s", most);
+    }
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
     return demi_refuse(w, __func__, "the world has no grain that can move; add grains "
@@ -41896,7 +42277,7 @@ static void demi_check_enclosed(dem_world *w, demi_findings *f) {
    distance that the fastest grain or wall moves in a step. */
 static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
     const int lasting = demi_response_is(w, DEMI_LASTING);
-    const double dt = (double)w->desc.dt;
+    const double dt = (double)w->desc.dt, rests = lasting ? 0 : demi_rest_limit(w);
     double fastest = demi_fastest(w);
     int i;
     if (!(dt > 0) || (lasting && !(a->contact_time > 0))) return;
@@ -41915,6 +42296,10 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
         demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
                   "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
                   (double)a->dt);
+    if (rests > 0 && dt > rests)
+        demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
+                  "%g s, must be at most %.3g s for polyhedra as small as these to rest on each "
+                  "other under gravity: use at most %.2g s", dt, rests, rests/1.5);
     if (w->effects.radius_min > 0 && fastest*dt > (double)w->effects.radius_min)
         demi_find(f, DEM_SEVERITY_ERROR, "at %.3g m/s a grain or wall moves %.3g radii of the "
                   "smallest grain in a step of %g s: they would pass through each other "

@@ -305,6 +305,21 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.present++;
     return (uint32_t)slot;
 }
+/* Returns the largest time step, s, at which polyhedra rest on each other under gravity, or 0 for
+   any: 0.15 sqrt(L/g), where L is the edge of a cube that fits into the circumscribed sphere of the
+   smallest polyhedron. In a longer step bodies fall so far before their contacts act that an arch
+   does not bear its weight. */
+static double demi_rest_limit(const dem_world *w) {
+    const double g = (double)demi_length(w->desc.gravity);
+    double least = DBL_MAX;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) {
+        const demi_shape *shape = demi_shape_of(w, i);
+        if (shape && shape->kind == DEMI_POLYHEDRON && w->bodies.inv_mass[i] > 0)
+            least = DEMI_MIN(least, (double)demi_radius(w, i));
+    }
+    return g > 0 && least < DBL_MAX ? 0.15*sqrt(2*least/(sqrt(3.0)*g)) : 0;
+}
 /* True if a part touches a wall through a tessellation: if the wall's row has no function for the
    two, or one that finds only gaps while springs need pressure. */
 static int demi_wall_faceted(const dem_world *w, const demi_wall *wall, int part) {

@@ -680,7 +680,7 @@ static void demi_check_enclosed(dem_world *w, demi_findings *f) {
    distance that the fastest grain or wall moves in a step. */
 static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
     const int lasting = demi_response_is(w, DEMI_LASTING);
-    const double dt = (double)w->desc.dt;
+    const double dt = (double)w->desc.dt, rests = lasting ? 0 : demi_rest_limit(w);
     double fastest = demi_fastest(w);
     int i;
     if (!(dt > 0) || (lasting && !(a->contact_time > 0))) return;
@@ -699,6 +699,10 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
         demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
                   "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
                   (double)a->dt);
+    if (rests > 0 && dt > rests)
+        demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
+                  "%g s, must be at most %.3g s for polyhedra as small as these to rest on each "
+                  "other under gravity: use at most %.2g s", dt, rests, rests/1.5);
     if (w->effects.radius_min > 0 && fastest*dt > (double)w->effects.radius_min)
         demi_find(f, DEM_SEVERITY_ERROR, "at %.3g m/s a grain or wall moves %.3g radii of the "
                   "smallest grain in a step of %g s: they would pass through each other "

@@ -579,10 +579,16 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
 }
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     if (demi_null_look(w, __func__, advice, "advice")) return DEM_ERROR_ARGUMENT;
-    if (!demi_response_is(w, DEMI_LASTING))
+    if (!demi_response_is(w, DEMI_LASTING)) {
+        const double rests = demi_rest_limit(w)/1.5;
+        char most[96] = "";
+        if (rests > 0)
+            demi_words(most, sizeof most, ", and at most %.2g s, so that polyhedra rest on each "
+                       "other", rests);
         return demi_refuse(w, __func__, "contacts of this world are impulses, which "
                            "have no contact time; choose a step in which grains move by less than "
-                           "a tenth of their radius");
+                           "a tenth of their radius%s", most);
+    }
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
     return demi_refuse(w, __func__, "the world has no grain that can move; add grains "
