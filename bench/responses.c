@@ -2,7 +2,7 @@
 
    build/responses          some minutes; results in build/out/responses: page.md for docs/impulses.md, responses.csv
                             for docs/data, figures
-   build/responses --part pile|silo|hopper|drum|heap|sweeps --seeds N
+   build/responses --part pile|silo|hopper|drum|heap|sweeps|towers --seeds N
 
    pile      a column of discs falls apart (lesson 2): angle of repose
    silo      beads in a tube that rises (lesson 5): load of the floor over the weight of the beads
@@ -10,6 +10,7 @@
    drum      discs in a rotating drum with lips (lesson 8), Froude number 0.05: torque
    heap      1,000, 10,000 and 100,000 spheres at rest, steps of 1 ms: sweeps, time of a step, of a contact and sweep
    sweeps    2,000 spheres: what is left after 30 to 1000 sweeps, cold, by each solver of convex cones
+   towers    a tower of 20 cubes and a heap of 200, which should rest: error and time by solver and tolerance
 
    Errors are relative differences from the springs of the largest modulus (the reference). Their bars are standard
    errors over seeds. Every run uses one thread. */
@@ -443,10 +444,80 @@ static void sweeps_part(void) {
     free(all);
 }
 
+/* Cubes of 1 m on each other or dropped into a box of 5 x 5 m, steps of 10 ms. After 4 s the largest speed, which should
+   be 0, over 2 s; and what a step takes. */
+static void towers_measure(int heap, int solver, double tolerance) {
+    enum { BEFORE = 400, STEPS = 200 };
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc stuff = DEM_MATERIAL_DESC;
+    dem_world *world;
+    dem_material rock;
+    dem_shape cube;
+    dem_real x[24];
+    double sweeps = 0, left = 0, fastest = 0, clock;
+    char label[80];
+    int i, k;
+    desc.gravity.z = (dem_real)-g;
+    desc.response = DEM_RESPONSE_IMPULSES;
+    desc.dt = DEM_R(0.01);
+    desc.threads = 1;
+    desc.solver = (dem_solver)solver;
+    desc.tolerance = (dem_real)tolerance;
+    world = dem_world_create(&desc);
+    stuff.density = 2500;
+    stuff.friction = DEM_R(0.5);
+    stuff.restitution = 0;
+    rock = dem_material_add(world, &stuff);
+    dem_wall_plane_add(world, rock, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    for (k = 0; k < 4 && heap; k++)
+        dem_wall_plane_add(world, rock, dem_vec3_make(k & 1 ? 5 : 0, k & 1 ? 5 : 0, 0),
+                           dem_vec3_make(DEM_R(0.0) + (k == 0) - (k == 1), DEM_R(0.0) + (k == 2) - (k == 3), 0));
+    for (i = 0; i < 24; i++) x[i] = i/3 >> i%3 & 1 ? DEM_R(0.5) : DEM_R(-0.5);
+    cube = dem_shape_polyhedron_add(world, 8, x);
+    for (i = 0; i < (heap ? 200 : 20); i++) {
+        const double side = 0.05*sin(12.9898*i);
+        dem_body_add(world, rock, cube, heap ? dem_vec3_make((dem_real)(0.65 + i%4*1.23 + side),
+                                                             (dem_real)(0.65 + i/4%4*1.23 - side),
+                                                             (dem_real)(0.6 + i/16*1.1)) : dem_vec3_make(0, 0, i + DEM_R(0.5)),
+                     dem_quat_make(1, 0, 0, 0));
+    }
+    if (dem_world_step(world, BEFORE) != DEM_OK) { refused(world); return; }
+    clock = study_clock();
+    for (k = 0; k < STEPS; k++) {
+        dem_bodies all;
+        dem_counters c;
+        if (dem_world_step(world, 1) != DEM_OK) { refused(world); return; }
+        all = dem_bodies_get(world);
+        c = dem_counters_get(world);
+        sweeps += c.sweeps;
+        left = c.residual_rms > left ? (double)c.residual_rms : left;
+        for (i = 0; i < all.count; i++) {
+            const dem_real *v = all.velocities + 4*i;
+            fastest = fmax(fastest, sqrt((double)(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])));
+        }
+    }
+    clock = (study_clock() - clock)/STEPS;
+    snprintf(label, sizeof label, "towers.%s.%s.%g", heap ? "heap" : "tower", demi_solvers[solver].name, tolerance);
+    study_result(label, fastest, "m/s");
+    if (page) fprintf(page, "| %s | %s | %s%.0e | %.1e | %.1e | %.1f | %.2f |\n", heap ? "heap of 200" : "tower of 20",
+                      demi_solvers[solver].name, tolerance > 0 ? "" : "default, rms ", tolerance > 0 ? tolerance : 5e-3, left,
+                      fastest, sweeps/STEPS, 1e3*clock);
+    dem_world_destroy(world);
+}
+static void towers_part(void) {
+    static const double tolerance[3] = {0, 1e-3, 1e-5};
+    int heap, k, i;
+    if (page) fprintf(page, "\nCubes of 1 m that should rest, steps of 10 ms:\n\n| scene | solver | tolerance, m/s | largest rms "
+                      "residual, m/s | largest speed, m/s | sweeps in a step | time of a step, ms |\n|---|---|---|---|---|---|---|\n");
+    for (heap = 0; heap < 2; heap++)
+        for (k = 0; k < DEMI_SOLVERS; k++)
+            for (i = 0; i < 3; i++) towers_measure(heap, k, tolerance[i]);
+}
+
 int main(int argc, char **argv) {
     static const char *part = "all", *out = "build/out/responses";
     static const study_option table[] = {
-        {"part", STUDY_TEXT, &part, 0, 0, "", "pile, silo, hopper, drum, heap, sweeps or all"},
+        {"part", STUDY_TEXT, &part, 0, 0, "", "pile, silo, hopper, drum, heap, sweeps, towers or all"},
         {"seeds", STUDY_INT, &seeds, 1, 50, "", "runs of each"},
         {"out", STUDY_TEXT, &out, 0, 0, "", "folder of results"},
     };
@@ -460,6 +531,7 @@ int main(int argc, char **argv) {
     csv = bench_table_open("responses.csv", "scene,quantity,unit,response,young_Pa,dt_s,mean,difference_percent,"
                              "difference_error_percent,processor_s_per_simulated_s");
     if (all || !strcmp(part, "sweeps")) sweeps_part();
+    if (all || !strcmp(part, "towers")) towers_part();
     if (all || !strcmp(part, "heap")) heap_part();
     if (all || !strcmp(part, "pile")) against("pile", "angle of repose", "degrees", pile_run);
     if (all || !strcmp(part, "silo")) against("silo", "load of the floor", "of the weight", silo_run);
