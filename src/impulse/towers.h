@@ -25,7 +25,7 @@ typedef struct demi_seat {
     int32_t points;                /* number of points that hold */
     dem_vec3 arm[2];               /* m, from the centres of a and b to the mean of the points */
     dem_real per[6];               /* 1/m2, inverse of their second moment: xx yy zz xy xz yz */
-    dem_vec3 push, turn;           /* an impulse on b, see demi_seat_part */
+    dem_vec3 push, turn;           /* an impulse on b, see demi_seat_share */
 } demi_seat;
 /* A body with seats. */
 typedef struct demi_tree_body {
@@ -93,7 +93,7 @@ static void demi_seat_divide(demi_seat *seat, dem_vec3 p, dem_vec3 l) {
     seat->turn = demi_tensor_times(seat->per, l);
 }
 /* Returns the share of a point, N s. */
-static dem_vec3 demi_seat_part(const demi_solver *s, const demi_seat *seat, int at) {
+static dem_vec3 demi_seat_share(const demi_solver *s, const demi_seat *seat, int at) {
     return demi_add(seat->push, demi_cross(seat->turn, demi_seat_to(s, seat, at)));
 }
 /* Divides the present impulse of a seat among its points again, half of the way that their cones
@@ -118,14 +118,14 @@ static void demi_seat_even(const dem_world *w, demi_seat *seat) {
         const int at = s->meetings[i].at;
         const demi_impulse *c = s->contacts + at;
         if (s->beside[at].holds)
-            part = DEMI_MIN(part, demi_point_part(c, demi_sub(demi_seat_part(s, seat, at),
+            part = DEMI_MIN(part, demi_point_part(c, demi_sub(demi_seat_share(s, seat, at),
                                                               demi_impulse_vector(c))));
     }
     for (i = seat->first; i < seat->last; i++) {
         const int at = s->meetings[i].at;
         demi_impulse *c = s->contacts + at;
         if (s->beside[at].holds)
-            demi_impulse_add(c, demi_scale(demi_sub(demi_seat_part(s, seat, at),
+            demi_impulse_add(c, demi_scale(demi_sub(demi_seat_share(s, seat, at),
                                                     demi_impulse_vector(c)), part/2));
     }
 }
@@ -255,8 +255,9 @@ static void demi_tree_limit(demi_solver *s, int body) {
     int i;
     for (i = seat->first; i < seat->last; i++) {
         const int at = s->meetings[i].at;
+        const dem_vec3 by = demi_seat_share(s, seat, at);
         if (s->beside[at].holds)
-            *part = DEMI_MIN(*part, demi_point_part(s->contacts + at, demi_seat_part(s, seat, at)));
+            *part = DEMI_MIN(*part, demi_point_part(s->contacts + at, by));
     }
 }
 /* Takes the step of a body and its seat. */
@@ -269,7 +270,7 @@ static void demi_tree_go(demi_solver *s, int body) {
     for (i = seat->first; i < seat->last; i++) {
         const int at = s->meetings[i].at;
         if (s->beside[at].holds)
-            demi_impulse_add(s->contacts + at, demi_scale(demi_seat_part(s, seat, at), part));
+            demi_impulse_add(s->contacts + at, demi_scale(demi_seat_share(s, seat, at), part));
     }
     demi_put(m->v, demi_add(demi_at(m->v), demi_scale(t->v, part)));
     demi_put(m->w, demi_add(demi_at(m->w), demi_scale(t->w, part)));
