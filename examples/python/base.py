@@ -1031,6 +1031,9 @@ class Struct(ctypes.Structure):
     # _call: the call that changes what this copy shows
     _functions = _of = _extra = _ids = _call = None
 
+    def __getattr__(self, name):
+        raise _no_attribute(self, name)
+
     def __init__(self, *values, **fields):
         if len(values) > len(self.rows) or values and self.numbers and len(values) < len(self.rows):
             raise ArgumentTypeError("%s: %d values are given, %s%d are wanted (%s)" % (
@@ -1777,7 +1780,7 @@ def _real_from(value, kind):
 
 
 def _no_attribute(thing, name):
-    """The exception for an attribute that an id does not have. It names the struct that has such a field."""
+    """The exception for an attribute that an id, a struct or a world does not have. It names what has one like it."""
     kind = type(thing)
     if name[:1] == "_" or name in ("shape", "dtype", "tolist"):     # what numpy and others look for
         return AttributeError("%s has no attribute %r" % (kind.__name__, name))
@@ -1787,6 +1790,8 @@ def _no_attribute(thing, name):
     words = [word for word in dir(kind) if word[0] != "_" and word not in dir(Struct)]
     if name + "s" in words:
         found.insert(0, "%s.%ss" % (one, name))
+    if name.endswith("_add") and name[:-4] in words:        # as in C
+        found.insert(0, "%s.%s" % (one, name[:-4]))
     if found:
         return NoFieldError("%s has no attribute %r; read %s" % (kind.__name__, name, " or ".join(found[:3])))
     import difflib
@@ -1840,6 +1845,9 @@ _thread = threading.get_ident
 class Handle:
     """A world, a replay or slabs: memory that the library owns."""
     _at = _context = None
+
+    def __getattr__(self, name):
+        raise _no_attribute(self, name)
 
     @property
     def _c(self):
@@ -2360,6 +2368,12 @@ class Rows:
     def __init__(self, world):
         object.__setattr__(self, "_world", world)
 
+    def __getattr__(self, name):
+        if name[:1] == "_":
+            raise AttributeError("Rows has no attribute %r" % name)
+        raise NoFieldError("world.bodies has no %r%s" % (name, "; radii are column 3 of world.bodies.positions" if name in (
+            "radius", "radii") else _near(name, [word for word in dir(type(self)) if word[0] != "_"])))
+
     def _struct(self):
         return _lib.dem_bodies_get(self._world._c)
 
@@ -2523,6 +2537,19 @@ def _row_property(name, doc):
     return property(lambda self: self._get(name), lambda self, value: self.__setattr__(name, value), doc=doc)
 
 
+class _Compiled(ctypes.CDLL):
+    """The functions of a text in C."""
+
+    def __getattr__(self, name):
+        try:
+            return super().__getattr__(name)
+        except AttributeError:
+            if name[:1] == "_":
+                raise
+            raise NoFieldError("dem.compile: the text has no function %r; check its name, and do not declare it static"
+                               % name) from None
+
+
 def compile(source, flags=()):
     """Compiles C functions, such as a contact law, and returns the library: World(law=dem.compile(text).sticky).
 
@@ -2547,7 +2574,7 @@ def compile(source, flags=()):
     whole = "#line 1 \"source\"\n" + source + "\n#line 1 \"dem.compile\"\n#include \"dem.h\"\nconst int dempy_real_size = (int)sizeof(dem_real);\n"
     command = os.environ.get("CC", "cc").split() + os.environ.get("DEM_CFLAGS", "-O2").split()
     command += ["-DDEM_REAL=float"] if Real is ctypes.c_float else []
-    command += ["-ffp-contract=off", "-shared", "-fPIC", "-I" + os.path.dirname(header)] + list(flags)
+    command += ["-ffp-contract=off", "-Werror=implicit-function-declaration", "-shared", "-fPIC", "-I" + os.path.dirname(header)] + list(flags)
     digest = hashlib.sha256(text + whole.encode() + "\n".join(command + [str(Real), sys.platform, platform.machine()]).encode())
     folder = _folder(header, None)
     path = os.path.join(folder, "law-%s-%s.so" % ("float" if Real is ctypes.c_float else "double", digest.hexdigest()[:16]))
@@ -2560,9 +2587,13 @@ def compile(source, flags=()):
                 file.write(whole)
             result = subprocess.run(command + [file_c, "-o", made, "-lm"], capture_output=True, text=True)
             if result.returncode:
-                raise FormatError("dem.compile: the text does not compile: %s" % result.stderr.replace(file_c, "source")[:2000])
+                with open(file_c, "w") as file:             # alone, its end is where the text ends
+                    file.write("#line 1 \"source\"\n" + source + "\n")
+                alone = subprocess.run(command + ["-fsyntax-only", file_c], capture_output=True, text=True)
+                said = (alone if alone.returncode else result).stderr
+                raise FormatError("dem.compile: the text does not compile: %s" % said.replace(file_c, "source")[:2000])
             os.replace(made, path)
-    library = ctypes.CDLL(path)
+    library = _Compiled(path)
     size = ctypes.c_int.in_dll(library, "dempy_real_size").value
     if size != ctypes.sizeof(Real):
         raise ArgumentError("dem.compile: the text sets DEM_REAL to a type of %d bytes, this process has reals of %d; leave it out, "

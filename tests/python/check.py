@@ -674,6 +674,18 @@ def _():
     raises(TypeError, lambda: dem.law_spring(dem.Contact(), (dem.Real*3)(), dem.Contact()), "dem.law_spring: f: ")
 
 
+@test("a misspelled attribute of a world, of its bodies or of a struct is a dem.Error that names the right one")
+def _():
+    world, glass = heap()
+    raises(dem.NoFieldError, lambda: world.totals.kinetc, "totals.kinetic")
+    raises(dem.NoFieldError, lambda: world.sphere_add, "world.sphere")
+    raises(dem.NoFieldError, lambda: world.bodies.position, "positions")
+    raises(dem.NoFieldError, lambda: world.bodies.radii, "column 3")
+    raises(dem.NoFieldError, lambda: dem.Contact().overlp, "contact.overlap")
+    same([hasattr(thing, "shape") for thing in (world, world.bodies, dem.Vec3(1, 2, 3))], [False, False, False])
+    same(copy.deepcopy(world.totals), world.totals)
+
+
 @test("dem.compile makes a law of a text in C; another text, another precision and a wrong text are told apart")
 def _():
     text = "#include \"dem.h\"\nvoid law(const dem_contact *c, dem_real *m, dem_contact_force *f) { (void)m; f->normal = %g*c->overlap; }\n"
@@ -691,6 +703,11 @@ def _():
     same(dem.compile(path)._name, dem.compile(text % 1e4)._name)
     raises(ValueError, lambda: dem.compile("#define DEM_REAL float\n" + text % 1), "4 bytes", "8") if dem.Real is ctypes.c_double else None
     raises(ValueError, lambda: dem.compile("\nint law(void) { return wrong; }\n"), "does not compile", "source:2")
+    raises(ValueError, lambda: dem.compile("int f("), "does not compile", "source:1", "end of input")
+    raises(ValueError, lambda: dem.compile("\nint f(void) { return other(); }\n"), "does not compile", "other")
+    library = dem.compile("static int law(void) { return 3; }\nint other(void) { return law(); }\n")
+    same(library.other(), 3)
+    raises(dem.NoFieldError, lambda: library.law, "'law'", "static")
     raises(TypeError, lambda: dem.compile(5), "dem.compile: source: 5")
     raises(OSError, lambda: dem.compile("/nowhere/law.c"), "/nowhere/law.c")
     other = ctypes.CDLL(compiled("float.so", "const int dempy_real_size = %d;\nvoid law(void) { }\n" % (12 - ctypes.sizeof(dem.Real)),
