@@ -123,8 +123,9 @@ typedef struct dem_world_desc {
     int sweeps;                    /* most sweeps over all contacts in a step; 0 means 200 */
     /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. 0 means when
        the root mean square change is below 0.05 g dt plus 1e-5 of the largest speed, and the
-       largest change is below 30 times that. Where polyhedra lie on faces, the root mean square
-       must also fall to a tenth of that and to half of its first value, or to 3e-4 of that. */
+       largest change is below 30 times that. Where polyhedra lie on faces, and in towers of more
+       than three bodies, the root mean square must also fall to a tenth of that and to half of its
+       first value, or to 1e-5 of that (single precision: 3e-4). */
     dem_real tolerance;
     int cold_start;                /* 1 begins with zero impulses, not those of the last step */
     /* 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.
