@@ -3100,8 +3100,8 @@ typedef struct dem_contact_info {
    those of the present state; all others, and with impulses all, are as the last computation of
    forces has left them. With impulses these forces, gravity and force fields together give the
    change of the velocities in the coming step. After bodies, walls or materials have changed, call
-   dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the list. Returns -1
-   if there is no list: before the first step, and after bodies or walls have changed. */
+   dem_contacts_each first: it computes them. Returns -1 if they are not known: before the first
+   step, and after bodies or walls have changed. */
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
 /* Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a
    pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all;
@@ -3121,7 +3121,7 @@ DEM_API int dem_bonds_make(dem_world *world, dem_real gap, dem_contact_fn make, 
    most `capacity` of them, and returns their number. `out` or null. Returns -1 if bodies or walls
    have changed since the last step. */
 DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capacity);
-/* Rebuilds the neighbour list now, for tests and analysis. A run does so automatically. */
+/* Rebuilds the neighbour list, not the contacts, for tests and analysis. A run does so too. */
 DEM_API dem_result dem_candidates_rebuild(dem_world *world);
 
 /* ---- contact events: collisions, impact energies, wear ---- */
@@ -5065,9 +5065,11 @@ typedef struct demi_timing {       /* >>step, >>advice */
 /* Which of the data that a step needs are valid. A change of the scene clears dt_valid,
    forces_valid and primed; adding or removing bodies also clears list_valid. dem_world_step
    restores what is missing, in the order 1 to 4: */
+enum { DEMI_LIST_ALONE = 2 };
 typedef struct demi_stages {
     int dt_valid;                  /* 1: the time step suits the scene */
-    int list_valid;                /* 2: the candidate lists fit the bodies */
+    int list_valid;                /* 2: the candidate lists fit the bodies; DEMI_LIST_ALONE:
+                                      their contacts have not been computed */
     int pairs_changed;             /* properties of a pair of materials have changed since */
     int forces_valid;              /* 3: forces belong to the present positions and velocities */
     int primed;                    /* 4: half-step velocities belong to the previous half step */
@@ -5608,6 +5610,8 @@ DEM_INLINE void demi_called(const dem_world *w, demi_calling was) {
    otherwise (demi_surfaces_outdated). Linked linear list: a body comes or goes. Time step: bodies,
    materials or speeds change. */
 DEM_INLINE void demi_list_outdated(dem_world *w) { w->stage.list_valid = 0; }
+/* Returns 1 if the contacts of the present bodies and walls have been computed. */
+DEM_INLINE int demi_contacts_known(const dem_world *w) { return w->stage.list_valid == 1; }
 DEM_INLINE void demi_halves_outdated(dem_world *w) { w->stage.primed = 0; }
 DEM_INLINE void demi_forces_outdated(dem_world *w) { w->stage.forces_valid = w->stage.primed = 0; }
 DEM_INLINE void demi_facets_outdated(dem_world *w) { w->facets_valid = 0; }
@@ -17539,11 +17543,17 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     return result;
 }
 
+/* Rebuilds the lists outside of a step: the forces may be those of another scene. */
+static dem_result demi_list_make(dem_world *w, const char *call) {
+    const dem_result result = demi_rebuild(w, call);
+    if (result == DEM_OK && !w->stage.forces_valid) w->stage.list_valid = DEMI_LIST_ALONE;
+    return result;
+}
 /* Fails because the list does not fit the bodies or walls any more. Returns -1. */
 static int demi_list_stale(const dem_world *world, const char *call) {
-    demi_refuse(world, call, "bodies or walls were added or changed after the last step, so there "
-                "is no list of contacts; first call dem_world_step, dem_contacts_each, which "
-                "computes the contacts, or dem_candidates_rebuild, which makes only the list");
+    demi_refuse(world, call, "bodies or walls were added or changed after the last step, so the "
+                "contacts are not known; first call dem_world_step, or dem_contacts_each, which "
+                "computes them (for dem_candidates_get alone: dem_candidates_rebuild)");
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
@@ -17564,7 +17574,7 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
 }
 DEM_API dem_result dem_candidates_rebuild(dem_world *w) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
-    return demi_rebuild(w, __func__);
+    return demi_list_make(w, __func__);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -32949,10 +32959,7 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     int k;
     if (demi_null_look(w, __func__, s, "stress")) return DEM_ERROR_ARGUMENT;
     memset(s, 0, sizeof *s);
-    if (!w->stage.list_valid) {
-        demi_list_stale(w, __func__);
-        return DEM_ERROR_ARGUMENT;
-    }
+    if (!demi_contacts_known(w) && demi_list_stale(w, __func__)) return DEM_ERROR_ARGUMENT;
     s->volume = demi_volume(w);
     if (!(s->volume > 0)) {
         s->volume = 0;
@@ -35053,6 +35060,7 @@ static dem_result demi_refresh_answer(dem_world *h) {
     if (result == DEM_OK) result = demi_all_forces(h, !stale);
     if (result == DEM_OK) result = demi_all_agree(h, demi_member_looked);
     h->stage.forces_valid = result == DEM_OK;
+    if (result == DEM_OK) h->stage.list_valid = 1;
     return result;
 }
 /* Computes the forces at the present time, because the scene has changed since the last step;
@@ -35534,6 +35542,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     c.rebuilds = w->clock.rebuilds;
     for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
+        if (!demi_contacts_known(w)) continue;
         c.contacts += w->domains[d].contacts;
         c.wall_contacts += w->domains[d].kept_walls;
         for (k = 0; k < w->domains[d].kept && pressing; k++) {
@@ -35566,7 +35575,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
     if (demi_null_look(w, __func__, w, "world")) return -1;
     demi_walk c = demi_walk_begin();
     int n = 0;
-    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
+    if (!demi_contacts_known(w)) return demi_list_stale(w, __func__);
     for (c.blind = !out || capacity <= 0; demi_walk_next(w, &c); c.blind |= n >= capacity) {
         if (!c.blind) out[n] = c.info;
         n++;
@@ -35769,7 +35778,7 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
                     "dem_wall_sieve_add returned", (int)sieve.id);
         return -1;
     }
-    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
+    if (!demi_contacts_known(w)) return demi_list_stale(w, __func__);
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
         const int all = w->domains[d].kept;
@@ -36385,8 +36394,8 @@ static void demi_mix_contacts(const dem_world *w, const signed char *kind, dem_m
     const double n = out->grains, even = 2.0*out->part*(n - out->part)/(n*(n - 1));
     demi_walk c = demi_walk_begin();
     double unlike = 0;
-    out->contacts = w->stage.list_valid ? 0 : -1;
-    while (w->stage.list_valid && demi_walk_next(w, &c)) {
+    out->contacts = demi_contacts_known(w) ? 0 : -1;
+    while (out->contacts >= 0 && demi_walk_next(w, &c)) {
         if (!c.counts || c.b < 0 || kind[c.a] < 0 || kind[c.b] < 0) continue;
         out->contacts++;
         unlike += kind[c.a] != kind[c.b];
@@ -42382,7 +42391,7 @@ DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     demi_check_enclosed(w, &f);
     demi_check_overlaps(w, &advice, &f);
     if (!w->bodies.count) return f.count;
-    if (!w->stage.list_valid && demi_rebuild(w, __func__) != DEM_OK) {
+    if (!w->stage.list_valid && demi_list_make(w, __func__) != DEM_OK) {
         demi_find(&f, DEM_SEVERITY_ERROR, "%.230s", w->error);
         return f.count;
     }
@@ -46402,7 +46411,7 @@ enum { DEMI_FILM_CONTACTS = 50000 };
    whose lines would be thin, and raises this limit until at most DEMI_FILM_CONTACTS are left. */
 static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
     dem_world *w = r->world;
-    const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && w->stage.list_valid;
+    const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && demi_contacts_known(w);
     const int count = due ? dem_contacts_get(w, 0, 0) : 0;
     const demi_periods periods = demi_periods_of(w);
     double least = 0;

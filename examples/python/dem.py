@@ -6766,8 +6766,7 @@ class World(WorldBase):
         are those of the present state; all others, and with impulses all, are as the last computation of forces has
         left them. With impulses these forces, gravity and force fields together give the change of the velocities in
         the coming step. After bodies, walls or materials have changed, call World.contacts_each first: it computes
-        them. World.candidates_rebuild makes only the list. It is an error if there is no list: before the first step,
-        and after bodies or walls have changed.
+        them. It is an error if they are not known: before the first step, and after bodies or walls have changed.
 
         Returns: Structs of ContactInfo
         """
@@ -6806,7 +6805,7 @@ class World(WorldBase):
         return array
 
     def candidates_rebuild(self):
-        """Rebuilds the neighbour list now, for tests and analysis. A run does so automatically."""
+        """Rebuilds the neighbour list, not the contacts, for tests and analysis. A run does so too."""
         self._ok(_lib.dem_candidates_rebuild(self._c))
 
     def events_record(self, *, function=None, user=None, begins=0):

@@ -354,8 +354,8 @@ typedef struct dem_contact_info {
    those of the present state; all others, and with impulses all, are as the last computation of
    forces has left them. With impulses these forces, gravity and force fields together give the
    change of the velocities in the coming step. After bodies, walls or materials have changed, call
-   dem_contacts_each first: it computes them. dem_candidates_rebuild makes only the list. Returns -1
-   if there is no list: before the first step, and after bodies or walls have changed. */
+   dem_contacts_each first: it computes them. Returns -1 if they are not known: before the first
+   step, and after bodies or walls have changed. */
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
 /* Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a
    pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all;
@@ -375,7 +375,7 @@ DEM_API int dem_bonds_make(dem_world *world, dem_real gap, dem_contact_fn make, 
    most `capacity` of them, and returns their number. `out` or null. Returns -1 if bodies or walls
    have changed since the last step. */
 DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capacity);
-/* Rebuilds the neighbour list now, for tests and analysis. A run does so automatically. */
+/* Rebuilds the neighbour list, not the contacts, for tests and analysis. A run does so too. */
 DEM_API dem_result dem_candidates_rebuild(dem_world *world);
 
 /* ---- contact events: collisions, impact energies, wear ---- */

@@ -32,9 +32,11 @@ typedef struct demi_timing {       /* >>step, >>advice */
 /* Which of the data that a step needs are valid. A change of the scene clears dt_valid,
    forces_valid and primed; adding or removing bodies also clears list_valid. dem_world_step
    restores what is missing, in the order 1 to 4: */
+enum { DEMI_LIST_ALONE = 2 };
 typedef struct demi_stages {
     int dt_valid;                  /* 1: the time step suits the scene */
-    int list_valid;                /* 2: the candidate lists fit the bodies */
+    int list_valid;                /* 2: the candidate lists fit the bodies; DEMI_LIST_ALONE:
+                                      their contacts have not been computed */
     int pairs_changed;             /* properties of a pair of materials have changed since */
     int forces_valid;              /* 3: forces belong to the present positions and velocities */
     int primed;                    /* 4: half-step velocities belong to the previous half step */
@@ -575,6 +577,8 @@ DEM_INLINE void demi_called(const dem_world *w, demi_calling was) {
    otherwise (demi_surfaces_outdated). Linked linear list: a body comes or goes. Time step: bodies,
    materials or speeds change. */
 DEM_INLINE void demi_list_outdated(dem_world *w) { w->stage.list_valid = 0; }
+/* Returns 1 if the contacts of the present bodies and walls have been computed. */
+DEM_INLINE int demi_contacts_known(const dem_world *w) { return w->stage.list_valid == 1; }
 DEM_INLINE void demi_halves_outdated(dem_world *w) { w->stage.primed = 0; }
 DEM_INLINE void demi_forces_outdated(dem_world *w) { w->stage.forces_valid = w->stage.primed = 0; }
 DEM_INLINE void demi_facets_outdated(dem_world *w) { w->facets_valid = 0; }

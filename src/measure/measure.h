@@ -16,6 +16,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     c.rebuilds = w->clock.rebuilds;
     for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
+        if (!demi_contacts_known(w)) continue;
         c.contacts += w->domains[d].contacts;
         c.wall_contacts += w->domains[d].kept_walls;
         for (k = 0; k < w->domains[d].kept && pressing; k++) {
@@ -48,7 +49,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
     if (demi_null_look(w, __func__, w, "world")) return -1;
     demi_walk c = demi_walk_begin();
     int n = 0;
-    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
+    if (!demi_contacts_known(w)) return demi_list_stale(w, __func__);
     for (c.blind = !out || capacity <= 0; demi_walk_next(w, &c); c.blind |= n >= capacity) {
         if (!c.blind) out[n] = c.info;
         n++;
@@ -251,7 +252,7 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
                     "dem_wall_sieve_add returned", (int)sieve.id);
         return -1;
     }
-    if (!w->stage.list_valid) return demi_list_stale(w, __func__);
+    if (!demi_contacts_known(w)) return demi_list_stale(w, __func__);
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
         const int all = w->domains[d].kept;

@@ -89,8 +89,8 @@ static void demi_mix_contacts(const dem_world *w, const signed char *kind, dem_m
     const double n = out->grains, even = 2.0*out->part*(n - out->part)/(n*(n - 1));
     demi_walk c = demi_walk_begin();
     double unlike = 0;
-    out->contacts = w->stage.list_valid ? 0 : -1;
-    while (w->stage.list_valid && demi_walk_next(w, &c)) {
+    out->contacts = demi_contacts_known(w) ? 0 : -1;
+    while (out->contacts >= 0 && demi_walk_next(w, &c)) {
         if (!c.counts || c.b < 0 || kind[c.a] < 0 || kind[c.b] < 0) continue;
         out->contacts++;
         unlike += kind[c.a] != kind[c.b];

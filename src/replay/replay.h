@@ -389,7 +389,7 @@ enum { DEMI_FILM_CONTACTS = 50000 };
    whose lines would be thin, and raises this limit until at most DEMI_FILM_CONTACTS are left. */
 static void demi_film_contacts(dem_replay *r, const dem_bodies *b) {
     dem_world *w = r->world;
-    const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && w->stage.list_valid;
+    const int due = r->desc.contacts && r->frames%r->desc.contacts == 0 && demi_contacts_known(w);
     const int count = due ? dem_contacts_get(w, 0, 0) : 0;
     const demi_periods periods = demi_periods_of(w);
     double least = 0;

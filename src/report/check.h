@@ -783,7 +783,7 @@ DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     demi_check_enclosed(w, &f);
     demi_check_overlaps(w, &advice, &f);
     if (!w->bodies.count) return f.count;
-    if (!w->stage.list_valid && demi_rebuild(w, __func__) != DEM_OK) {
+    if (!w->stage.list_valid && demi_list_make(w, __func__) != DEM_OK) {
         demi_find(&f, DEM_SEVERITY_ERROR, "%.230s", w->error);
         return f.count;
     }

@@ -790,6 +790,7 @@ static dem_result demi_refresh_answer(dem_world *h) {
     if (result == DEM_OK) result = demi_all_forces(h, !stale);
     if (result == DEM_OK) result = demi_all_agree(h, demi_member_looked);
     h->stage.forces_valid = result == DEM_OK;
+    if (result == DEM_OK) h->stage.list_valid = 1;
     return result;
 }
 /* Computes the forces at the present time, because the scene has changed since the last step;

@@ -220,10 +220,7 @@ DEM_API dem_result dem_stress_get(const dem_world *w, dem_stress *s) {
     int k;
     if (demi_null_look(w, __func__, s, "stress")) return DEM_ERROR_ARGUMENT;
     memset(s, 0, sizeof *s);
-    if (!w->stage.list_valid) {
-        demi_list_stale(w, __func__);
-        return DEM_ERROR_ARGUMENT;
-    }
+    if (!demi_contacts_known(w) && demi_list_stale(w, __func__)) return DEM_ERROR_ARGUMENT;
     s->volume = demi_volume(w);
     if (!(s->volume > 0)) {
         s->volume = 0;

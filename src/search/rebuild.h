@@ -535,11 +535,17 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     return result;
 }
 
+/* Rebuilds the lists outside of a step: the forces may be those of another scene. */
+static dem_result demi_list_make(dem_world *w, const char *call) {
+    const dem_result result = demi_rebuild(w, call);
+    if (result == DEM_OK && !w->stage.forces_valid) w->stage.list_valid = DEMI_LIST_ALONE;
+    return result;
+}
 /* Fails because the list does not fit the bodies or walls any more. Returns -1. */
 static int demi_list_stale(const dem_world *world, const char *call) {
-    demi_refuse(world, call, "bodies or walls were added or changed after the last step, so there "
-                "is no list of contacts; first call dem_world_step, dem_contacts_each, which "
-                "computes the contacts, or dem_candidates_rebuild, which makes only the list");
+    demi_refuse(world, call, "bodies or walls were added or changed after the last step, so the "
+                "contacts are not known; first call dem_world_step, or dem_contacts_each, which "
+                "computes them (for dem_candidates_get alone: dem_candidates_rebuild)");
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
@@ -560,5 +566,5 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
 }
 DEM_API dem_result dem_candidates_rebuild(dem_world *w) {
     if (demi_null(w, __func__, w, "world")) return DEM_ERROR_ARGUMENT;
-    return demi_rebuild(w, __func__);
+    return demi_list_make(w, __func__);
 }

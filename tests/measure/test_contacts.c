@@ -64,5 +64,33 @@ int main(int argc, char **argv) {
             dem_world_destroy(plain);
         }
     }
+    TEST("every read of contacts fails until a step or dem_contacts_each finds those of new bodies") {
+        int how, check;
+        for (how = 0; how < 2; how++)
+            for (check = 0; check < 2; check++) {
+                dem_material stuff;
+                dem_world *world = stacks(how ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS, &stuff);
+                seen all = {{{0, 0, 0}}, 0};
+                dem_stress stress;
+                int before;
+                CHECK_EQ(dem_world_step(world, 5), DEM_OK);
+                before = dem_contacts_get(world, 0, 0);
+                CHECK(before > 0);
+                CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);       /* nothing was added: all are known */
+                CHECK_EQ(dem_contacts_get(world, 0, 0), before);
+                CHECK(dem_sphere_add(world, stuff, DEM_R(0.01), dem_vec3_make(1, 1, DEM_R(0.00999))).slot > 0);
+                if (check) CHECK(dem_world_check(world, 0, 0) >= 0);
+                else CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
+                CHECK(dem_candidates_get(world, 0, 0) >= 0);
+                CHECK_EQ(dem_contacts_get(world, 0, 0), -1);
+                CHECK_STR(dem_world_error_get(world), "contacts are not known");
+                CHECK(dem_stress_get(world, &stress) != DEM_OK);
+                CHECK_STR(dem_world_error_get(world), "contacts are not known");
+                CHECK_EQ(dem_counters_get(world).wall_contacts, 0);
+                CHECK_EQ(dem_contacts_each(world, see, &all), before + 1);
+                CHECK_EQ(dem_contacts_get(world, 0, 0), before + 1);
+                dem_world_destroy(world);
+            }
+    }
     return test_end();
 }

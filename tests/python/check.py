@@ -1645,7 +1645,7 @@ def _():
             (TypeError, lambda: world.cell_set(rate="a"), "World.cell_set: rate: "), (TypeError, lambda: world.run(1e-3, "p"), "World.run: progress: 'p'"),
             (ValueError, lambda: dem.World(threads=100), "threads=100"), (ValueError, lambda: dem.World(law_memory=99), "law_memory=99"),
             (ValueError, lambda: world.group("coarse"), "World.group: 'coarse'", "World(groups='coarse')"),
-            (ValueError, lambda: world.contacts, "world.step", "world.candidates_rebuild"), (ValueError, lambda: dem.World(groups="a a"), "groups: 'a'"),
+            (ValueError, lambda: world.contacts, "world.step", "world.contacts_each"), (ValueError, lambda: dem.World(groups="a a"), "groups: 'a'"),
             (ValueError, lambda: dem.World(body_reals=["a", "b", "a"]), "World: body_reals: 'a' is given twice")):
         same(isinstance(raises(kind, call, *words), dem.Error), True, words[0])
     same("first call dem_" in str(raises(dem.Error, lambda: world.contacts)), False)
