@@ -134,7 +134,7 @@ def build(header=None, folder=None):
         command += ["-I" + os.path.dirname(header), os.path.join(work, "dem.c"), "-o", os.path.join(work, "dem.so"), "-lm"]
         if "-lomp" in command:
             command.append(command.pop(command.index("-lomp")))
-        print("dem.py: compiling %s, once; this takes 10 to 30 s" % header, file=sys.stderr)
+        print("dem.py: compiling %s, once; this takes 10 to 60 s" % header, file=sys.stderr)
         result = subprocess.run(command, capture_output=True, text=True)
         if result.returncode:
             raise LoadError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
@@ -330,6 +330,12 @@ def _renamed(function, wrong, right):
         raise
 
 
+def _wanted(value, kind):
+    """What was given instead of an object of this kind."""
+    hint = "; write world.group(%r)" % value if isinstance(value, str) and kind.__name__ == "Group" else ""
+    return "%s, a %s is wanted%s" % (_given(value), kind.__name__, hint)
+
+
 def _text_of(value, where):
     """value as the bytes of a C text; None is refused."""
     try:
@@ -380,7 +386,7 @@ def _parts_of(value, world, where):
 def _handle_of(value, kind, where):
     """The pointer of a world that is an argument."""
     if not isinstance(value, kind):
-        raise ArgumentTypeError("%s: %s, a %s is wanted" % (where, _given(value), kind.__name__))
+        raise ArgumentTypeError("%s: %s" % (where, _wanted(value, kind)))
     return value._c
 
 
@@ -410,7 +416,7 @@ def _converter(kind, null):
                 return value
             if value is None and null:
                 return kind()
-            raise TypeError("%s, a %s is wanted" % (_given(value), kind.__name__))
+            raise TypeError(_wanted(value, kind))
         return convert
     if isinstance(kind, type) and issubclass(kind, Struct):
         def convert(value):
@@ -515,7 +521,7 @@ def _checked(entry, name, names, kinds):
                                                                               "" if of._at else ", which is closed"))
         for i, kind in structs:
             if not isinstance(values[i], kind):
-                raise ArgumentTypeError("%s: %s: %s, a %s is wanted" % (where, names[i].rstrip("="), _given(values[i]), kind.__name__))
+                raise ArgumentTypeError("%s: %s: %s" % (where, names[i].rstrip("="), _wanted(values[i], kind)))
         return entry(*values)
     call.entry = entry                                      # the function of the library itself
     return call
@@ -1053,6 +1059,10 @@ class Struct(ctypes.Structure):
         """A struct of the arguments of a call, whose name error messages have."""
         made = cls()
         made._put(fields, where + ": ")
+        for name in cls.uses if "kind" in fields else ():
+            if made.kind.name.lower() not in cls.uses[name] and getattr(made, name) != getattr(cls(), name):
+                raise ArgumentError("%s: %s: %s, but a wall of kind %r does not use it; it belongs to kind=%s" % (
+                    where, name, _given(fields[name]), made.kind.name.lower(), " or ".join(map(repr, cls.uses[name]))))
         return made
 
     def _put(self, fields, where=None):
@@ -1305,6 +1315,7 @@ class Struct(ctypes.Structure):
         return "%s(%s)" % (type(self).__name__, ", ".join(shown))
 
 
+Struct.uses = {}                # fields that only some of its kinds use: the names of those kinds
 Struct.whole = False            # a sequence must have all fields
 Struct.plain = None             # of the class of a struct that a function may only read: the class without that
 
@@ -1638,7 +1649,9 @@ def _struct(cls):
             cls._functions_[name] = kind
         if special:
             setattr(cls, name, _field(name, kind, doc))
-        if doc:
+        if doc is None:                                     # shares the comment of the field before it
+            docs[-1] = re.sub("(?=: )", ", " + name, docs[-1], count=1)
+        elif doc:
             docs.append("%s: %s" % (name, doc))
     cls.kinds = kinds
     cls.counted = {field for arrays in cls.counts.values() for field, _ in arrays if not isinstance(cls.kinds[field], View)}
@@ -1660,7 +1673,7 @@ class Id(Struct):
             return value
         if value is None:
             return cls()
-        raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
+        raise TypeError(_wanted(value, cls))
 
     def __setattr__(self, name, value):
         if name[:1] != "_":
@@ -1807,15 +1820,24 @@ def _no_groups(name):
         _given(name), name))
 
 
+def _no_ledger():
+    return ArgumentError("World.ledger: this world keeps no account of energy; make it with dem.World(ledger=1)")
+
+
 def _in_python(text):
     """An error message of dem.h, with the functions that it recommends as they are called in Python."""
     head, colon, rest = text.partition(": ")
+    return head + colon + _said(rest)
+
+
+def _said(text):
+    """A text of dem.h, with functions, fields and constants as they are written in Python."""
     names = {function.replace("dempy_", "dem_"): name[0].lower() + name[1:] if "." in name else "dem." + name
              for function, _, _, name, _ in _FUNCTIONS if not function.startswith(("dempy_rows", "dempy_ids", "dempy_put"))}
     for words, in_python in _PHRASES:
-        rest = re.sub(words, in_python, rest)
-    rest = re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
-    return head + colon + re.sub(r"\bDEM_\w+\b", lambda found: _CONSTANTS.get(found.group(0), found.group(0)), rest)
+        text = re.sub(words, in_python, text)
+    text = re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), text)
+    return re.sub(r"\bDEM_\w+\b", lambda found: _CONSTANTS.get(found.group(0), found.group(0)), text)
 
 
 def _desc_field(found):
@@ -1829,7 +1851,9 @@ _PHRASES = (        # of error messages of dem.h, and what is written in Python
     (r"start from DEM_[A-Z]+(?:_DESC)? and set (?=\w+$)", "give only the fields that differ from their defaults, and "),
     (r"start from DEM_[A-Z]+(?:_DESC)?(?: and set only what differs)?", "give only the fields that differ from their defaults"),
     (r"start from dem_pair_get and change only what differs", "give only the fields that change"),
-    (r"set it in the desc before the call", "give it as an argument of the call"),
+    (r"^(\w+) is 0([^,;]*, must be [^;]*); set it in the desc before the call", r"\1 is 0\2; give \1=..."),
+    (r"; set it in the desc before the call", ""),
+    (r"\b(is|are) null\b", r"\1 None"),
     (r"set desc\.boundary\[(\d)\] to DEM_BOUNDARY_PERIODIC", r"make axis \1 periodic with World(boundary=...)"),
     (r"an output of kind DEM_OUTPUT_CALL", "an output of kind 'call', world.output(kind='call', function=...)"),
     (r"\bdesc\.(\w+) = (\w+)", r"World(\1=\2)"),
@@ -2030,7 +2054,7 @@ class Handle:
             size = libc.fread(text, 1, size, file)
         finally:
             libc.fclose(file)
-        print(text.raw[:size].decode(errors="replace"), end="", file=out or sys.stdout)
+        print(_said(text.raw[:size].decode(errors="replace")), end="", file=out or sys.stdout)
         self._ok(0)
         return result
 
@@ -2264,6 +2288,10 @@ class ReplayBase(Handle):
         result = self._memory.complete(self._film)
         if result:
             self._raise(_ERRORS[result])
+        with open(self._path, "rb") as page:
+            if not any(b'<script type="dem/frame">' in line for line in page):
+                warnings.warn("%s has no frames and shows nothing: give World.replay(interval=...) before a run, or call "
+                              "Replay.frame_write" % self._path, stacklevel=4)
 
 
 class SlabsBase(Handle):

@@ -374,7 +374,7 @@ def build(header=None, folder=None):
         command += ["-I" + os.path.dirname(header), os.path.join(work, "dem.c"), "-o", os.path.join(work, "dem.so"), "-lm"]
         if "-lomp" in command:
             command.append(command.pop(command.index("-lomp")))
-        print("dem.py: compiling %s, once; this takes 10 to 30 s" % header, file=sys.stderr)
+        print("dem.py: compiling %s, once; this takes 10 to 60 s" % header, file=sys.stderr)
         result = subprocess.run(command, capture_output=True, text=True)
         if result.returncode:
             raise LoadError("dem.py: dem.h does not compile: %s\n%s" % (" ".join(command), result.stderr[-2000:]))
@@ -570,6 +570,12 @@ def _renamed(function, wrong, right):
         raise
 
 
+def _wanted(value, kind):
+    """What was given instead of an object of this kind."""
+    hint = "; write world.group(%r)" % value if isinstance(value, str) and kind.__name__ == "Group" else ""
+    return "%s, a %s is wanted%s" % (_given(value), kind.__name__, hint)
+
+
 def _text_of(value, where):
     """value as the bytes of a C text; None is refused."""
     try:
@@ -620,7 +626,7 @@ def _parts_of(value, world, where):
 def _handle_of(value, kind, where):
     """The pointer of a world that is an argument."""
     if not isinstance(value, kind):
-        raise ArgumentTypeError("%s: %s, a %s is wanted" % (where, _given(value), kind.__name__))
+        raise ArgumentTypeError("%s: %s" % (where, _wanted(value, kind)))
     return value._c
 
 
@@ -650,7 +656,7 @@ def _converter(kind, null):
                 return value
             if value is None and null:
                 return kind()
-            raise TypeError("%s, a %s is wanted" % (_given(value), kind.__name__))
+            raise TypeError(_wanted(value, kind))
         return convert
     if isinstance(kind, type) and issubclass(kind, Struct):
         def convert(value):
@@ -755,7 +761,7 @@ def _checked(entry, name, names, kinds):
                                                                               "" if of._at else ", which is closed"))
         for i, kind in structs:
             if not isinstance(values[i], kind):
-                raise ArgumentTypeError("%s: %s: %s, a %s is wanted" % (where, names[i].rstrip("="), _given(values[i]), kind.__name__))
+                raise ArgumentTypeError("%s: %s: %s" % (where, names[i].rstrip("="), _wanted(values[i], kind)))
         return entry(*values)
     call.entry = entry                                      # the function of the library itself
     return call
@@ -1293,6 +1299,10 @@ class Struct(ctypes.Structure):
         """A struct of the arguments of a call, whose name error messages have."""
         made = cls()
         made._put(fields, where + ": ")
+        for name in cls.uses if "kind" in fields else ():
+            if made.kind.name.lower() not in cls.uses[name] and getattr(made, name) != getattr(cls(), name):
+                raise ArgumentError("%s: %s: %s, but a wall of kind %r does not use it; it belongs to kind=%s" % (
+                    where, name, _given(fields[name]), made.kind.name.lower(), " or ".join(map(repr, cls.uses[name]))))
         return made
 
     def _put(self, fields, where=None):
@@ -1545,6 +1555,7 @@ class Struct(ctypes.Structure):
         return "%s(%s)" % (type(self).__name__, ", ".join(shown))
 
 
+Struct.uses = {}                # fields that only some of its kinds use: the names of those kinds
 Struct.whole = False            # a sequence must have all fields
 Struct.plain = None             # of the class of a struct that a function may only read: the class without that
 
@@ -1878,7 +1889,9 @@ def _struct(cls):
             cls._functions_[name] = kind
         if special:
             setattr(cls, name, _field(name, kind, doc))
-        if doc:
+        if doc is None:                                     # shares the comment of the field before it
+            docs[-1] = re.sub("(?=: )", ", " + name, docs[-1], count=1)
+        elif doc:
             docs.append("%s: %s" % (name, doc))
     cls.kinds = kinds
     cls.counted = {field for arrays in cls.counts.values() for field, _ in arrays if not isinstance(cls.kinds[field], View)}
@@ -1900,7 +1913,7 @@ class Id(Struct):
             return value
         if value is None:
             return cls()
-        raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
+        raise TypeError(_wanted(value, cls))
 
     def __setattr__(self, name, value):
         if name[:1] != "_":
@@ -2047,15 +2060,24 @@ def _no_groups(name):
         _given(name), name))
 
 
+def _no_ledger():
+    return ArgumentError("World.ledger: this world keeps no account of energy; make it with dem.World(ledger=1)")
+
+
 def _in_python(text):
     """An error message of dem.h, with the functions that it recommends as they are called in Python."""
     head, colon, rest = text.partition(": ")
+    return head + colon + _said(rest)
+
+
+def _said(text):
+    """A text of dem.h, with functions, fields and constants as they are written in Python."""
     names = {function.replace("dempy_", "dem_"): name[0].lower() + name[1:] if "." in name else "dem." + name
              for function, _, _, name, _ in _FUNCTIONS if not function.startswith(("dempy_rows", "dempy_ids", "dempy_put"))}
     for words, in_python in _PHRASES:
-        rest = re.sub(words, in_python, rest)
-    rest = re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), rest)
-    return head + colon + re.sub(r"\bDEM_\w+\b", lambda found: _CONSTANTS.get(found.group(0), found.group(0)), rest)
+        text = re.sub(words, in_python, text)
+    text = re.sub(r"\bdem_\w+\b", lambda found: names.get(found.group(0), found.group(0)), text)
+    return re.sub(r"\bDEM_\w+\b", lambda found: _CONSTANTS.get(found.group(0), found.group(0)), text)
 
 
 def _desc_field(found):
@@ -2069,7 +2091,9 @@ _PHRASES = (        # of error messages of dem.h, and what is written in Python
     (r"start from DEM_[A-Z]+(?:_DESC)? and set (?=\w+$)", "give only the fields that differ from their defaults, and "),
     (r"start from DEM_[A-Z]+(?:_DESC)?(?: and set only what differs)?", "give only the fields that differ from their defaults"),
     (r"start from dem_pair_get and change only what differs", "give only the fields that change"),
-    (r"set it in the desc before the call", "give it as an argument of the call"),
+    (r"^(\w+) is 0([^,;]*, must be [^;]*); set it in the desc before the call", r"\1 is 0\2; give \1=..."),
+    (r"; set it in the desc before the call", ""),
+    (r"\b(is|are) null\b", r"\1 None"),
     (r"set desc\.boundary\[(\d)\] to DEM_BOUNDARY_PERIODIC", r"make axis \1 periodic with World(boundary=...)"),
     (r"an output of kind DEM_OUTPUT_CALL", "an output of kind 'call', world.output(kind='call', function=...)"),
     (r"\bdesc\.(\w+) = (\w+)", r"World(\1=\2)"),
@@ -2270,7 +2294,7 @@ class Handle:
             size = libc.fread(text, 1, size, file)
         finally:
             libc.fclose(file)
-        print(text.raw[:size].decode(errors="replace"), end="", file=out or sys.stdout)
+        print(_said(text.raw[:size].decode(errors="replace")), end="", file=out or sys.stdout)
         self._ok(0)
         return result
 
@@ -2504,6 +2528,10 @@ class ReplayBase(Handle):
         result = self._memory.complete(self._film)
         if result:
             self._raise(_ERRORS[result])
+        with open(self._path, "rb") as page:
+            if not any(b'<script type="dem/frame">' in line for line in page):
+                warnings.warn("%s has no frames and shows nothing: give World.replay(interval=...) before a run, or call "
+                              "Replay.frame_write" % self._path, stacklevel=4)
 
 
 class SlabsBase(Handle):
@@ -3366,8 +3394,8 @@ class Wall(Id):
         kind: one of "fixed", "translating", "rotating", "oscillating", "user", "table", "servo"
         velocity: m/s, of translating walls; of oscillating ones the direction only; of servo walls the direction in
             which they press, and their largest speed
-        point: m; point and direction of the axis of rotation, to which WallLoads also refers torques; axis 0 means
-            along z. Rotating walls need an axis.
+        point, axis: m; point and direction of the axis of rotation, to which WallLoads also refers torques; axis 0
+            means along z. Rotating walls need an axis.
         speed: rad/s, of rotating walls
         amplitude: m: of oscillating walls
         frequency: Hz: of oscillating walls
@@ -3537,7 +3565,7 @@ class Group(Id):
 
 @_struct
 class Shape(Id):
-    """counts from 1 in desc.groups"""
+    """counts from 1 in World(groups=...)"""
     c_name = 'dem_shape'
     rows = [
         ('id', ctypes.c_int32, ''),
@@ -3589,7 +3617,7 @@ class Body(Id):
         spin: rad/s
         fixed: 1: the body never moves, whatever forces act on it
         orientation: Rotates the frame in which the shape was given into the world. Body.set accepts any length but 0.
-            Spheres have one if desc.orientations is 1.
+            Spheres have one if World(orientations=1).
         """
         state = _renamed(lambda: self.state, 'Body.state', 'Body.set')
         state._put({name: value for name, value in (('position', position), ('velocity', velocity), ('spin', spin),
@@ -3601,7 +3629,7 @@ class Body(Id):
         """Sets the radius of a body, m, > 0 (BodyState.radius; all lengths of its shape scale with it). Mass and moments
         of inertia follow from the density of the material. Velocity, spin and contacts with their history stay. The
         next step checks the time step, or chooses it again. The ledger counts the kinetic energy of the new mass as
-        `inserted`, and what springs gain as `growth`. See desc.growth for radii that change all the time.
+        `inserted`, and what springs gain as `growth`. See World(growth=...) for radii that change all the time.
         """
         self.world._ok(_lib.dem_body_radius_set(self.world._c, self, radius))
 
@@ -3662,28 +3690,28 @@ class Body(Id):
 
 @_struct
 class ContactWho(Struct):
-    """The two bodies of a contact, for laws that request them by desc.law_who = 1."""
+    """The two bodies of a contact, for laws that request them by World(law_who=1)."""
     c_name = 'dem_contact_who'
     rows = [
         ('a', Body, "b is the id 0 at a wall; c.wall is then the wall's id"),
-        ('b', Body, ""),
+        ('b', Body, None),
         ('radius_a', Real,
          'm, of the spheres that touch (member spheres of clusters); of other shapes the bounding radius; 0 '
          'for a wall, except a wall of grains: the radius of its grains'),
-        ('radius_b', Real, ""),
+        ('radius_b', Real, None),
         ('mass_a', Real, 'kg, of the whole bodies; 0 for a wall'),
-        ('mass_b', Real, ""),
+        ('mass_b', Real, None),
         ('point', Vec3, 'm, contact point in the world frame; at a wall: on the surface of a'),
         ('time', ctypes.c_double, 's, at the end of the step'),
         ('reals_a', ctypes.POINTER(Real),
          'present values of the user-defined numbers of a and of b or the wall, in the order of '
-         'desc.body_reals; None if desc.body_reals names none'),
-        ('reals_b', ctypes.POINTER(Real), ""),
+         'World(body_reals=...); None if World(body_reals=...) names none'),
+        ('reals_b', ctypes.POINTER(Real), None),
         ('rate_a', ctypes.POINTER(Real),
          'The law adds the rates of change of these numbers here, per s. They are 0 when the law is called; '
          'the pointers are None if reals_a is. If a contact has several contact points (member spheres of '
          'clusters, facets), dem.h multiplies the rates of each by its weight'),
-        ('rate_b', ctypes.POINTER(Real), ""),
+        ('rate_b', ctypes.POINTER(Real), None),
     ]
 
 
@@ -3696,7 +3724,7 @@ class Contact(Struct):
     c_name = 'dem_contact'
     rows = [
         ('overlap', Real, 'm, > 0 in contact; < 0 across a gap (laws with a range only)'),
-        ('range', Real, 'm, gap up to which the law is called here (desc.law_range); or 0'),
+        ('range', Real, 'm, gap up to which the law is called here (World(law_range=...)); or 0'),
         ('closing_speed', Real, 'm/s, positive while the two approach'),
         ('normal', Vec3, 'unit vector from a to b'),
         ('slip', Vec3, 'm/s, tangential velocity at the contact point, rotation included'),
@@ -3716,23 +3744,23 @@ class Contact(Struct):
          'approach, and the ledger divides `elastic` and `sag` by s. The ledger closes if the normal force is '
          'proportional to these; with other forces, for example a constant attraction, only while s is '
          'constant: not at corners and edges.'),
-        ('cn', Real, ""),
+        ('cn', Real, None),
         ('kt', Real, 'built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others)'),
-        ('ct', Real, ""),
+        ('ct', Real, None),
         ('kun', Real, 'N/m, unloading of the hysteretic law; otherwise 0'),
         ('friction', Real, 'of the pair of materials'),
-        ('friction_static', Real, ""),
-        ('rolling_friction', Real, ""),
-        ('spinning_friction', Real, ""),
+        ('friction_static', Real, None),
+        ('rolling_friction', Real, None),
+        ('spinning_friction', Real, None),
         ('sliding', Real, 'force.sliding of the last step; 0 when the contact begins'),
         ('material_a', ctypes.c_int32, 'ids of materials'),
-        ('material_b', ctypes.c_int32, ""),
+        ('material_b', ctypes.c_int32, None),
         ('wall', ctypes.c_int32, 'id of the wall; 0: b is a body'),
         ('tension', ctypes.c_int, 'Tension, Load, Slider of the world desc'),
-        ('friction_load', ctypes.c_int, ""),
-        ('slider', ctypes.c_int, ""),
-        ('who', ContactWho, 'zeros unless desc.law_who is 1'),
-        ('user', ctypes.c_void_p, 'desc.law_user'),
+        ('friction_load', ctypes.c_int, None),
+        ('slider', ctypes.c_int, None),
+        ('who', ContactWho, 'zeros unless World(law_who=1)'),
+        ('user', ctypes.c_void_p, 'World(law_user=...)'),
         ('kad', Real, 'coefficients of single laws'),
     ]
 
@@ -3769,7 +3797,7 @@ class ContactForce(Struct):
          'N/m, d(elastic)/d(overlap): at the overlap in the middle of that part of the step in which the two '
          'touched. Hysteretic law: kn'),
         ('kt', Real, 'N/m, tangential stiffness: likewise'),
-        ('kt_step', Real, ""),
+        ('kt_step', Real, None),
         ('ct', Real, 'N s/m, tangential dashpot'),
         ('sliding', Real,
          '1 while the contact slides, otherwise 0. The friction laws set it. If friction_static is larger than'
@@ -3831,7 +3859,7 @@ class ContactRows(Struct):
     counts = {'count': (('touch', 1),), 'memory_count': (('memory', 1),)}
     rows = [
         ('count', ctypes.c_int, 'a multiple of DEM_ROW_GROUP'),
-        ('memory_count', ctypes.c_int, 'desc.law_memory'),
+        ('memory_count', ctypes.c_int, 'World(law_memory=...)'),
         ('touch', ctypes.POINTER(Real), '1 in contact or within the range of the law, otherwise 0'),
         ('overlap', ctypes.POINTER(Real), ''),
         ('range', ctypes.POINTER(Real), ''),
@@ -3865,9 +3893,9 @@ class ContactRows(Struct):
         ('user', ctypes.c_void_p, ''),
         ('memory', ctypes.POINTER(Real)*LAW_MEMORY, 'contact history: memory[k][q]'),
         ('normal_force', ctypes.POINTER(Real), 'slides: force.sliding'),
-        ('tangent', ctypes.POINTER(Real)*3, ""),
-        ('moment', ctypes.POINTER(Real)*3, ""),
-        ('slides', ctypes.POINTER(Real), ""),
+        ('tangent', ctypes.POINTER(Real)*3, None),
+        ('moment', ctypes.POINTER(Real)*3, None),
+        ('slides', ctypes.POINTER(Real), None),
         ('energy', ctypes.POINTER(Real)*7, 'in the order of ContactEnergy; all None if the world keeps no ledger'),
     ]
 
@@ -3897,7 +3925,7 @@ def _wrap_dem_law_fn(function, context, struct):
 
 
 LawFn = Function(_wrap_dem_law_fn, None, ctypes.POINTER(Contact), ctypes.POINTER(Real), ctypes.POINTER(ContactForce))
-LawFn.__doc__ = 'A contact law: computes *force from *c. `memory` is the contact history: desc.law_memory reals. They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer than the range. A law with a range decides itself when a bond or bridge begins and ends, and stores that in its history. If c.dt is 0, dem.h only asks for the force: leave `memory` unchanged. The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put tangential springs there, and scalars after them. A law must use nothing except its arguments and c.user. Several threads call it at once.'
+LawFn.__doc__ = 'A contact law: computes *force from *c. `memory` is the contact history: World(law_memory=...) reals. They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer than the range. A law with a range decides itself when a bond or bridge begins and ends, and stores that in its history. If c.dt is 0, dem.h only asks for the force: leave `memory` unchanged. The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put tangential springs there, and scalars after them. A law must use nothing except its arguments and c.user. Several threads call it at once.'
 
 
 def _wrap_dem_law_rows_fn(function, context, struct):
@@ -3970,10 +3998,10 @@ class BodyState(Struct):
         ('fixed', ctypes.c_int, '1: the body never moves, whatever forces act on it'),
         ('orientation', Quat,
          'Rotates the frame in which the shape was given into the world. Body.set accepts any length but 0. '
-         'Spheres have one if desc.orientations is 1.'),
+         'Spheres have one if World(orientations=1).'),
         ('shape', Shape, 'id 0 for a sphere'),
         ('moments', Vec3, 'kg m2, about the principal axes'),
-        ('reals', ctypes.POINTER(Real), 'desc.body_reals, valid until the next step; None: none'),
+        ('reals', ctypes.POINTER(Real), 'World(body_reals=...), valid until the next step; None: none'),
     ]
 
 
@@ -4003,7 +4031,7 @@ def _wrap_dem_reals_fn(function, context, struct):
 
 
 RealsFn = Function(_wrap_dem_reals_fn, None, ctypes.POINTER(Real), ctypes.POINTER(Real), ctypes.POINTER(BodyState), Body, ctypes.c_double, Real, ctypes.c_void_p)
-RealsFn.__doc__ = "Advances the user-defined numbers of a body by one step, in place: `reals` has as many entries as desc.body_reals has names. rates: per second, the sum of what the law added for all contacts of the body. *body is its state at the end of the step, at `time` (s); dt: s. Without this function dem.h takes Euler's step, reals += rates dt, which is stable for dt below 2 over the fastest rate of decay. It is called once per body and step, from several threads."
+RealsFn.__doc__ = "Advances the user-defined numbers of a body by one step, in place: `reals` has as many entries as World(body_reals=...) has names. rates: per second, the sum of what the law added for all contacts of the body. *body is its state at the end of the step, at `time` (s); dt: s. Without this function dem.h takes Euler's step, reals += rates dt, which is stable for dt below 2 over the fastest rate of decay. It is called once per body and step, from several threads."
 
 
 def _wrap_dem_growth_fn(function, context, struct):
@@ -4023,7 +4051,7 @@ def _wrap_dem_growth_fn(function, context, struct):
 
 
 GrowthFn = Function(_wrap_dem_growth_fn, Real, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.c_void_p)
-GrowthFn.__doc__ = 'Returns the rate of the radius of a body, m/s (desc.growth): > 0 grows, < 0 wears. *body is its state at `time` (s). Slabs call it from several threads.'
+GrowthFn.__doc__ = 'Returns the rate of the radius of a body, m/s (World(growth=...)): > 0 grows, < 0 wears. *body is its state at `time` (s). Slabs call it from several threads.'
 
 
 ForceFn = Function(None, ctypes.c_void_p)
@@ -4054,7 +4082,7 @@ def _wrap_dem_body_force_fn(function, context, struct):
 
 
 BodyForceFn = Function(_wrap_dem_body_force_fn, None, ctypes.POINTER(BodyState), Body, ctypes.c_double, ctypes.POINTER(Vec3), ctypes.POINTER(Vec3), ctypes.c_void_p)
-BodyForceFn.__doc__ = 'A force field that sees the whole body and may exert a torque. It adds to *force (N) and *torque (N m, about the centre of mass, in the world frame), which are 0 when it is called. *body is the state as Body.state returns it; spheres have an orientation only with desc.orientations. time: s. id: the body, to find your own data by its slot. Otherwise as ForceFn.'
+BodyForceFn.__doc__ = 'A force field that sees the whole body and may exert a torque. It adds to *force (N) and *torque (N m, about the centre of mass, in the world frame), which are 0 when it is called. *body is the state as Body.state returns it; spheres have an orientation only with World(orientations=...). time: s. id: the body, to find your own data by its slot. Otherwise as ForceFn.'
 
 
 @_struct
@@ -4250,9 +4278,9 @@ class Coefficients(Struct):
         ('r_eff', Real, 'm: effective radius and mass'),
         ('m_eff', Real, 'kg: effective radius and mass'),
         ('kn', Real, 'see Contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v'),
-        ('cn', Real, ""),
-        ('kt', Real, ""),
-        ('ct', Real, ""),
+        ('cn', Real, None),
+        ('kt', Real, None),
+        ('ct', Real, None),
         ('kun', Real, 'N/m, hysteretic law; otherwise 0'),
         ('damping_ratio', Real, 'beta = -ln e / sqrt(pi^2 + ln^2 e); larger with "compensated"; 0 with impulses'),
         ('contact_time', Real, 's, at the impact speed; hysteretic law: [ALK07] eq 2.45'),
@@ -4306,7 +4334,7 @@ class Sizes(Struct):
          'spread) and exp(6 spread); normal: 6 deviations from the median, min at least 1e-3 of the median; '
          'sieve curve: its ends; Weibull and exponential: max where F = 1 - 1e-9. The others are required: min'
          ' of Weibull and exponential, both of uniform.'),
-        ('max', Real, ""),
+        ('max', Real, None),
         ('median', Real, 'm, log-normal and normal, > 0'),
         ('spread', ctypes.c_double, 'log-normal, > 0 and < 10: standard deviation of ln r'),
         ('scale', Real, 'm, > 0: of Weibull; exponential: the mean, > min'),
@@ -4340,11 +4368,11 @@ class Bodies(Struct):
          'count x 4: w, x, y, z, from principal axes to the world; None if none is followed'),
         ('shapes', View(ctypes.c_int32, 'count', const=True),
          'count: ids of Shape, 0: sphere; None if orientations is'),
-        ('real_count', ctypes.c_int, 'numbers per body (desc.body_reals)'),
+        ('real_count', ctypes.c_int, 'numbers per body (World(body_reals=...))'),
         ('reals', View(Real, 'count', 'real_count', const=True), 'count x real_count; None if there are none'),
         ('rates', View(Real, 'count', 'real_count', const=True),
          'count x real_count, per s, of the last step; None likewise'),
-        ('groups', ctypes.POINTER(ctypes.c_uint32), 'bit id - 1: in that group; None without desc.groups'),
+        ('groups', ctypes.POINTER(ctypes.c_uint32), 'bit id - 1: in that group; None without World(groups=...)'),
     ]
 
 
@@ -4358,7 +4386,7 @@ class Selection(Struct):
         ('material', Material, 'only of this material; None means any'),
         ('shape', Shape, 'only of this shape; None means any, spheres included'),
         ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means no limit'),
-        ('radius_max', Real, ""),
+        ('radius_max', Real, None),
         ('region', View(Region, const=True, one=True),
          'Only bodies whose centre is in this region, or on a periodic axis one of its images. None means '
          'anywhere.'),
@@ -4381,7 +4409,7 @@ class BodiesMeans(Struct):
         ('radius', ctypes.c_double, 'm: means over bodies'),
         ('force', ctypes.c_double*3, 'N, sum: of the last step, without gravity'),
         ('kinetic', ctypes.c_double, 'J, sums, those of fixed bodies included'),
-        ('rotational', ctypes.c_double, ""),
+        ('rotational', ctypes.c_double, None),
     ]
 
 
@@ -4414,7 +4442,7 @@ class ShapeInfo(Struct):
     rows = [
         ('spheres', ctypes.c_int, 'of a cluster; otherwise 0'),
         ('corners', ctypes.c_int, 'of a polyhedron, or the prism of a polygon; otherwise 0'),
-        ('faces', ctypes.c_int, ""),
+        ('faces', ctypes.c_int, None),
         ('volume', Real, 'm3'),
         ('centre', Vec3, 'm, centre of mass in the frame in which the shape was given'),
         ('frame', Quat, 'rotates the principal axes into that frame'),
@@ -4446,8 +4474,8 @@ class EllipsoidContact(Struct):
         ('point', Vec3, 'm, of that contact'),
         ('normal', Vec3, 'unit vector from a to b'),
         ('depth_normal', Real, 'm, overlaps as in Overlap; negative if the two are apart, where depth_chord is 0'),
-        ('depth_chord', Real, ""),
-        ('depth_conservative', Real, ""),
+        ('depth_chord', Real, None),
+        ('depth_conservative', Real, None),
         ('iterations', ctypes.c_int, 'evaluations of that function'),
     ]
 
@@ -4502,6 +4530,19 @@ MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is 
 class Motion(Struct):
     """The motion of a wall. It starts from the pose that the wall has when Wall.motion_set is called."""
     c_name = 'dem_motion'
+    uses = {'velocity': ('translating', 'oscillating', 'servo'),
+            'speed': ('rotating',),
+            'amplitude': ('oscillating',),
+            'frequency': ('oscillating',),
+            'phase': ('oscillating',),
+            'start': ('translating', 'rotating', 'oscillating', 'table', 'servo'),
+            'function': ('user',),
+            'ramp': ('translating', 'rotating', 'oscillating', 'servo'),
+            'load': ('servo',),
+            'area': ('servo',),
+            'travel': ('servo',),
+            'table': ('table', 'servo'),
+            'table_repeats': ('table',)}
     counts = {'table_count': (('table', 1),)}
     rows = [
         ('kind', MotionKind, ''),
@@ -4511,7 +4552,7 @@ class Motion(Struct):
         ('point', Vec3,
          'm; point and direction of the axis of rotation, to which WallLoads also refers torques; axis 0 means'
          ' along z. Rotating walls need an axis.'),
-        ('axis', Vec3, ""),
+        ('axis', Vec3, None),
         ('speed', Real, 'rad/s, of rotating walls'),
         ('amplitude', Real, 'm: of oscillating walls'),
         ('frequency', Real, 'Hz: of oscillating walls'),
@@ -4617,7 +4658,7 @@ class WallLoads(Struct):
         ('work', ctypes.c_double, 'J, from the wall to the grains'),
         ('time', ctypes.c_double, 's, over which these sums extend'),
         ('rate', ctypes.c_double*BODY_REALS,
-         'per s, last step: what laws gave to its numbers (desc.body_reals), in their units'),
+         'per s, last step: what laws gave to its numbers (World(body_reals=...)), in their units'),
         ('gained', ctypes.c_double*BODY_REALS, 'its sum over time'),
     ]
 
@@ -4676,7 +4717,7 @@ class JointState(Struct):
     c_name = 'dem_joint_state'
     rows = [
         ('force', Vec3, 'N, N m about the joined point: on a (b has the opposite), of the last step, with the motor'),
-        ('torque', Vec3, ""),
+        ('torque', Vec3, None),
         ('motor_torque', Real, 'N m, on a about axis, of the last step'),
         ('power', Real, 'W, from the motor to a and b; 0 without a motor'),
         ('gap', Real, 'in the middle of the coming step: m between the points'),
@@ -4806,7 +4847,7 @@ class FeedState(Struct):
     c_name = 'dem_feed_state'
     rows = [
         ('fed', ctypes.c_uint64*CLASSES, 'grains added, per class and in all'),
-        ('total', ctypes.c_uint64, ""),
+        ('total', ctypes.c_uint64, None),
         ('mass', ctypes.c_double, 'kg, added'),
         ('waiting', ctypes.c_uint64, 'grains due but without room; by mass at a rate: 0 or 1'),
         ('done', ctypes.c_int, '1: no more grains will be added'),
@@ -4829,7 +4870,7 @@ class OutletDesc(Struct):
         ('box', Box, 'm, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0)'),
         ('beyond', Real, "m: only grains this far or farther from the frame's z axis"),
         ('wanted_min', Real, 'm, radii meant to leave here; max 0 means no limit'),
-        ('wanted_max', Real, ""),
+        ('wanted_max', Real, None),
         ('class_count', ctypes.c_int, 'size classes to count in, 0 to 16'),
         ('radius', Real*CLASSES, 'm, ascending; a grain counts in the nearest class'),
         ('material', Material, 'only grains of this material; None means all'),
@@ -4846,30 +4887,30 @@ class OutletState(Struct):
     c_name = 'dem_outlet_state'
     rows = [
         ('count', ctypes.c_uint64*CLASSES, 'grains, per class and in all'),
-        ('total', ctypes.c_uint64, ""),
+        ('total', ctypes.c_uint64, None),
         ('mass', ctypes.c_double*CLASSES, 'kg'),
-        ('total_mass', ctypes.c_double, ""),
+        ('total_mass', ctypes.c_double, None),
         ('sorted', ctypes.c_uint64, 'grains of wanted radii, and others: [ALK07] s_i and g_i'),
-        ('gangue', ctypes.c_uint64, ""),
+        ('gangue', ctypes.c_uint64, None),
         ('sorted_mass', ctypes.c_double, 'kg'),
-        ('gangue_mass', ctypes.c_double, ""),
+        ('gangue_mass', ctypes.c_double, None),
         ('since', ctypes.c_double, 's: when counting began'),
         ('last', ctypes.c_double, 's: when the last grain was counted'),
         ('back', ctypes.c_uint64*CLASSES,
          '`keep` only: grains that went back, and grains that are inside now. Grains that were inside when '
          'counting began have not entered.'),
-        ('held', ctypes.c_uint64*CLASSES, ""),
-        ('back_total', ctypes.c_uint64, ""),
-        ('held_total', ctypes.c_uint64, ""),
+        ('held', ctypes.c_uint64*CLASSES, None),
+        ('back_total', ctypes.c_uint64, None),
+        ('held_total', ctypes.c_uint64, None),
         ('back_mass', ctypes.c_double*CLASSES, 'kg'),
-        ('held_mass', ctypes.c_double*CLASSES, ""),
-        ('back_total_mass', ctypes.c_double, ""),
-        ('held_total_mass', ctypes.c_double, ""),
+        ('held_mass', ctypes.c_double*CLASSES, None),
+        ('back_total_mass', ctypes.c_double, None),
+        ('held_total_mass', ctypes.c_double, None),
         ('residence', ctypes.c_double*CLASSES,
          'residence_bin only: sums over the counted grains, per class, of their residence times, s, and of the'
          ' squares, s2: the mean of class k is residence[k]/count[k]. Grains per bin; the last bin has all '
          'longer times.'),
-        ('residence_square', ctypes.c_double*CLASSES, ""),
+        ('residence_square', ctypes.c_double*CLASSES, None),
         ('residence_count', ctypes.c_uint64*RESIDENCE_BINS, ''),
     ]
 
@@ -4889,8 +4930,8 @@ class Advice(Struct):
          's, the smallest Rayleigh time pi R sqrt(rho/G)/(0.1631 nu + 0.8766) of the smallest grains of each '
          'material; for comparison only'),
         ('speed', Real,
-         'm/s, the impact speed assumed: desc.impact_speed; if that is 0, the largest of the speeds of grains,'
-         ' feeds and walls and of a fall through the height of the scene, at least 1e-3'),
+         'm/s, the impact speed assumed: World(impact_speed=...); if that is 0, the largest of the speeds of '
+         'grains, feeds and walls and of a fall through the height of the scene, at least 1e-3'),
         ('binds', Text(160), 'the contact that limits the step: materials, radii, speed'),
     ]
 
@@ -4929,7 +4970,7 @@ class CellState(Struct):
         ('strain', ctypes.c_double*3, 'since the beginning: logarithmic strain of each axis, > 0: longer'),
         ('shear', ctypes.c_double, 'since the beginning: shear strain'),
         ('rate', ctypes.c_double*3, '1/s, of the last step'),
-        ('shear_rate', ctypes.c_double, ""),
+        ('shear_rate', ctypes.c_double, None),
         ('stress', ctypes.c_double*3, 'Pa, along each axis, before the last step; at first 0'),
     ]
 
@@ -4958,8 +4999,8 @@ class Counters(Struct):
         ('sweeps', ctypes.c_int, 'impulses: sweeps of the last step'),
         ('residual', Real,
          'impulses: m/s, largest and root mean square change of a contact velocity in the last sweep of the '
-         'last step; compare desc.tolerance'),
-        ('residual_rms', Real, ""),
+         'last step; compare World(tolerance=...)'),
+        ('residual_rms', Real, None),
         ('unsolved', ctypes.c_uint64,
          'impulses: solves whose sweeps did not reach the tolerance. dem.h solves once per step, and once more'
          ' after the scene has changed, for instance when a feed has added a grain'),
@@ -4969,7 +5010,7 @@ class Counters(Struct):
 
 @_struct
 class Ledger(Struct):
-    """The account of energy, J, since the world was created; zeros unless desc.ledger is 1. residual = kinetic +
+    """The account of energy, J, since the world was created; zeros unless World(ledger=1). residual = kinetic +
     rotational + elastic - gravity - walls - force - cell - inserted - growth + removed + normal + slide + tangent +
     rolling The residual is the error of the time integration; compare it with `throughput`. Potential energy is not
     stored energy here: `gravity` is the work of gravity. If a user-defined law never fills force.energy, the ledger
@@ -4979,8 +5020,8 @@ class Ledger(Struct):
     c_name = 'dem_ledger'
     rows = [
         ('kinetic', ctypes.c_double, 'stored now'),
-        ('rotational', ctypes.c_double, ""),
-        ('elastic', ctypes.c_double, ""),
+        ('rotational', ctypes.c_double, None),
+        ('elastic', ctypes.c_double, None),
         ('gravity', ctypes.c_double, 'supplied: work of gravity'),
         ('walls', ctypes.c_double, 'supplied: work of moving walls, belts, motors and rails'),
         ('force', ctypes.c_double, 'supplied: work of force fields'),
@@ -5011,7 +5052,7 @@ class Totals(Struct):
     rows = [
         ('mass', ctypes.c_double, 'kg'),
         ('kinetic', ctypes.c_double, 'J'),
-        ('rotational', ctypes.c_double, ""),
+        ('rotational', ctypes.c_double, None),
         ('centre', ctypes.c_double*3, 'centre of mass, m'),
         ('momentum', ctypes.c_double*3, 'momentum, kg m/s'),
         ('angular', ctypes.c_double*3, 'angular momentum about the origin, kg m2/s'),
@@ -5040,7 +5081,7 @@ class Observable(Struct):
     c_name = 'dem_observable'
     rows = [
         ('name', str, '`unit` or None; both must outlive the Trials'),
-        ('unit', str, ""),
+        ('unit', str, None),
         ('function', ObserverFn, ''),
         ('user', ctypes.c_void_p, 'passed to `function`; or None'),
         ('scale', ctypes.c_double, '>= 0, divides deviations; 0: the value of the reference'),
@@ -5139,7 +5180,7 @@ class ContactInfo(Struct):
     c_name = 'dem_contact_info'
     rows = [
         ('a', Body, 'b is None for a contact with a wall'),
-        ('b', Body, ""),
+        ('b', Body, None),
         ('wall', ctypes.c_int32, 'Wall id; 0: b is a body'),
         ('point', Vec3, 'm, on the surface of a wall'),
         ('normal', Vec3, 'unit, from a to b'),
@@ -5185,9 +5226,9 @@ class Event(Struct):
          'J, energy lost so far as in Ledger: by the normal law, by sliding, by tangential dashpots (and '
          'springs that held energy at the end; what they stored when recording began counts as supplied), by '
          'rolling resistance'),
-        ('lost_slide', ctypes.c_double, ""),
-        ('lost_tangent', ctypes.c_double, ""),
-        ('lost_rolling', ctypes.c_double, ""),
+        ('lost_slide', ctypes.c_double, None),
+        ('lost_tangent', ctypes.c_double, None),
+        ('lost_rolling', ctypes.c_double, None),
     ]
 
 
@@ -5234,9 +5275,9 @@ class Impacts(Struct):
         ('lost_normal', ctypes.c_double,
          'J, lost in all recorded contacts, those that exist included. For all materials these are what the '
          'ledger has booked since recording began, except losses of joints.'),
-        ('lost_slide', ctypes.c_double, ""),
-        ('lost_tangent', ctypes.c_double, ""),
-        ('lost_rolling', ctypes.c_double, ""),
+        ('lost_slide', ctypes.c_double, None),
+        ('lost_tangent', ctypes.c_double, None),
+        ('lost_rolling', ctypes.c_double, None),
         ('bin', ctypes.c_double*IMPACT_LIMITS, 'J, limits of the bins'),
         ('impacts', ctypes.c_double*IMPACT_BINS,
          'contacts that have ended, by energy of impact mass*closing_speed^2/2; those that had begun before '
@@ -5267,15 +5308,15 @@ class Servo(Struct):
     c_name = 'dem_servo'
     rows = [
         ('target', ctypes.c_double, 'N: force to reach and force on the grains, now'),
-        ('force', ctypes.c_double, ""),
+        ('force', ctypes.c_double, None),
         ('speed', ctypes.c_double, 'm/s'),
         ('travel', ctypes.c_double, 'm, from the pose in which the motion began'),
         ('stiffness', ctypes.c_double,
          'N/m, N s/m: sums over the contacts of the wall when its speed was chosen, at `time` (s). They set '
          'the gain. The speed changes from u to v with stiffness dt (v - 0.9 u) + damping (v - u) = (target - '
          'force)/2, and is at most the largest one.'),
-        ('damping', ctypes.c_double, ""),
-        ('time', ctypes.c_double, ""),
+        ('damping', ctypes.c_double, None),
+        ('time', ctypes.c_double, None),
     ]
 
 
@@ -5289,8 +5330,7 @@ class Stress(Struct):
         ('contact', ctypes.c_double*6,
          'Pa, pressure positive: of contacts, the sum of force x branch over the volume'),
         ('kinetic', ctypes.c_double*6,
-         'Pa, pressure positive: of contacts, the sum of motion, the sum of m v v over the volume, about the '
-         'mean velocity'),
+         'Pa, pressure positive: of motion, the sum of m v v over the volume, about the mean velocity'),
         ('total', ctypes.c_double*6,
          'Pa, pressure positive: both together. The branch of a contact with a wall ends on the surface of the'
          ' wall. At rest without weight, stress x volume is therefore the sum of force x position over the '
@@ -5311,15 +5351,15 @@ class FieldDesc(Struct):
     c_name = 'dem_field_desc'
     rows = [
         ('box', Box,
-         'm, required: what the cells divide. In planar worlds cells are desc.thickness deep, whatever the '
-         'extent of the box along z, which must contain 0.'),
+         'm, required: what the cells divide. In planar worlds cells are World(thickness=...) deep, whatever '
+         'the extent of the box along z, which must contain 0.'),
         ('cells', ctypes.c_int*3, 'required, >= 1: along each axis, at most 2^28 in all'),
         ('start', ctypes.c_double, 's, window of time; end 0 means no end'),
-        ('end', ctypes.c_double, ""),
+        ('end', ctypes.c_double, None),
         ('interval', ctypes.c_double, 's, from start on; 0 means every 100 steps of the present dt'),
         ('material', Material, 'only grains of this material; None means all grains'),
         ('radius_min', Real, 'm, only of these (bounding) radii; max 0 means any'),
-        ('radius_max', Real, ""),
+        ('radius_max', Real, None),
         ('stress', ctypes.c_int, '1: also flux, stress and contacts; visits every contact'),
         ('width', Real,
          "m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach c = 2 "
@@ -5348,13 +5388,13 @@ class FieldData(Struct):
          'cells x 3: sum of momenta, kg m/s; velocity = momentum/mass'),
         ('grains', View(ctypes.c_double, 'cells', const=True), 'cells: sum of the number of grains'),
         ('flux', View(ctypes.c_double, 'cells', 6, const=True),
-         'None unless desc.stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over'
-         ' the volume of the cell stress: cells x 6, Pa, pressure positive: sum over contacts of force x '
-         'branch over the volume of the cell. A contact of two grains acts along the line between their '
-         "centres, and each grain accounts for its half; one with a wall acts from the centre to the wall's "
-         'surface. contacts: cells: sum of the number of contacts of the grains'),
-        ('stress', View(ctypes.c_double, 'cells', 6, const=True), ""),
-        ('contacts', View(ctypes.c_double, 'cells', const=True), ""),
+         'None unless stress is 1. flux: cells x 6 (xx yy zz xy xz yz), Pa: sum over grains of m v v over the '
+         'volume of the cell stress: cells x 6, Pa, pressure positive: sum over contacts of force x branch '
+         'over the volume of the cell. A contact of two grains acts along the line between their centres, and '
+         "each grain accounts for its half; one with a wall acts from the centre to the wall's surface. "
+         'contacts: cells: sum of the number of contacts of the grains'),
+        ('stress', View(ctypes.c_double, 'cells', 6, const=True), None),
+        ('contacts', View(ctypes.c_double, 'cells', const=True), None),
     ]
 
 
@@ -5367,25 +5407,25 @@ class FieldCell(Struct):
         ('solid', ctypes.c_double, 'solid fraction'),
         ('density', ctypes.c_double, 'bulk density, kg/m3'),
         ('velocity', ctypes.c_double*3, 'm/s, weighted by mass'),
-        ('temperature', ctypes.c_double, 'm2/s2, per axis, about that velocity; 0 unless desc.stress is 1'),
+        ('temperature', ctypes.c_double, 'm2/s2, per axis, about that velocity; 0 unless stress is 1'),
         ('stress', ctypes.c_double*6,
          'Pa, xx yy zz xy xz yz, pressure positive: of contacts and of motion about that velocity; 0 unless '
-         'desc.stress is 1'),
-        ('coordination', ctypes.c_double, 'contacts per grain, with walls; 0 unless desc.stress is 1'),
+         'stress is 1'),
+        ('coordination', ctypes.c_double, 'contacts per grain, with walls; 0 unless stress is 1'),
         ('grains_variance', ctypes.c_double,
-         'Variances over the samples, of the values of the whole cell; 0 unless desc.variance is 1: of grains,'
-         ' solid, density, (kg/m3)^2, and velocity, m2/s2, weighted by mass. The mean of n independent samples'
-         ' has the standard error sqrt(variance/n).'),
-        ('solid_variance', ctypes.c_double, ""),
-        ('density_variance', ctypes.c_double, ""),
-        ('velocity_variance', ctypes.c_double*3, ""),
+         'Variances over the samples, of the values of the whole cell; 0 unless variance is 1: of grains, '
+         'solid, density, (kg/m3)^2, and velocity, m2/s2, weighted by mass. The mean of n independent samples '
+         'has the standard error sqrt(variance/n).'),
+        ('solid_variance', ctypes.c_double, None),
+        ('density_variance', ctypes.c_double, None),
+        ('velocity_variance', ctypes.c_double*3, None),
     ]
 
 
 @_struct
 class BodyMeans(Struct):
-    """Averages of one grain over the samples of the field with desc.bodies, wherever the grain was. The field chooses
-    grains by material, radius and group.
+    """Averages of one grain over the samples of the field with bodies, wherever the grain was. The field chooses grains
+    by material, radius and group.
     """
     c_name = 'dem_body_means'
     rows = [
@@ -5436,7 +5476,7 @@ class Mixing(Struct):
         ('segregation', ctypes.c_double*3,
          'along x, y, z, and of the distance from the axis: 1 if the component is ahead of all others, 0 '
          'random, -1 if it is behind; random mixtures deviate by sqrt((N + 1)/(3 Na Nb))'),
-        ('segregation_radial', ctypes.c_double, ""),
+        ('segregation_radial', ctypes.c_double, None),
         ('contacts', ctypes.c_int, 'between grains in the box; -1: no list (World.contacts)'),
         ('contact_segregation', ctypes.c_double, '1: no contact between the components, 0 random; needs a list'),
     ]
@@ -5530,7 +5570,7 @@ def _wrap_dem_replay_desc_number_fn(function, context, struct):
 
 
 ReplayDescNumberFn = Function(_wrap_dem_replay_desc_number_fn, ctypes.c_double, ctypes.c_void_p, Body, ctypes.c_void_p)
-ReplayDescNumberFn.__doc__ = 'returns the number of a body, for every frame; None means one of desc.body_reals'
+ReplayDescNumberFn.__doc__ = 'returns the number of a body, for every frame; None means one of World(body_reals=...)'
 
 
 @_struct
@@ -5540,11 +5580,11 @@ class ReplayDesc(Struct):
     rows = [
         ('title', str, 'copied; None means the name of the file'),
         ('number', str,
-         'Name of the numbers by which grains can be coloured: one in desc.body_reals, a group in desc.groups '
-         '(1: member, 0: not), or one for the values of number_fn. None means the first name, or "number". '
-         'Copied, at most 63 characters.'),
+         'Name of the numbers by which grains can be coloured: one in World(body_reals=...), a group in '
+         'World(groups=...) (1: member, 0: not), or one for the values of number_fn. None means the first '
+         'name, or "number". Copied, at most 63 characters.'),
         ('number_fn', ReplayDescNumberFn,
-         'returns the number of a body, for every frame; None means one of desc.body_reals'),
+         'returns the number of a body, for every frame; None means one of World(body_reals=...)'),
         ('user', ctypes.c_void_p, 'passed to number_fn; or None'),
         ('resolution', Real, 'm, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame'),
         ('interval', ctypes.c_double,
@@ -5621,7 +5661,7 @@ class OutputDesc(Struct):
          '`start`. Without # the file is replaced each time. The path of a CSV file has no #. "call": or None.'),
         ('interval', ctypes.c_double, 's, required, 1e-12 to 1e15'),
         ('start', ctypes.c_double, 's, times of the first and the last; end 0 means no last'),
-        ('end', ctypes.c_double, ""),
+        ('end', ctypes.c_double, None),
         ('wall', Wall,
          'CSV: what a line contains. One of five: the loads of this wall, as Wall.loads_csv_write; the counts '
          'of an outlet; the mixing of two components, if mixing.cells are set; the values that `values` '
@@ -5637,9 +5677,9 @@ class OutputDesc(Struct):
         ('field', Field, 'FIELD_CSV: required'),
         ('z0', Real,
          'm, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with '
-         'World.output_every: over desc.thickness (planar), over desc.domain along z if it has an extent, or '
-         'else from the lowest to the highest body'),
-        ('z1', Real, ""),
+         'World.output_every: over World(thickness=...) (planar), over World(domain=...) along z if it has an '
+         'extent, or else from the lowest to the highest body'),
+        ('z1', Real, None),
         ('outlet', Outlet,
          'CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as '
          'in OutletState'),
@@ -5706,7 +5746,7 @@ class SlabsDesc(Struct):
          'required, 1 to 1024: number of slabs in all processes; only runs with the same number have the same '
          'bits'),
         ('first', ctypes.c_int, 'this process holds the slabs first to first + local - 1; local 0 means all'),
-        ('local', ctypes.c_int, ""),
+        ('local', ctypes.c_int, None),
         ('transport', Transport, 'required if another process holds slabs'),
         ('balance', Real,
          'borders move if the work of the busiest slab exceeds this many times the mean, >= 1; 0 means 1.1. '
@@ -5723,7 +5763,7 @@ class Slab(Struct):
         ('grains', ctypes.c_int, 'its own grains'),
         ('ghosts', ctypes.c_int, 'copies of grains of the lower neighbour'),
         ('lo', ctypes.c_double, 'm, its borders; -1e300, 1e300: none on that side'),
-        ('hi', ctypes.c_double, ""),
+        ('hi', ctypes.c_double, None),
         ('work', ctypes.c_double, 'candidates + 4 per body, at the last rebuild'),
         ('seconds', ctypes.c_double, 'wall time spent on it so far'),
         ('bytes', ctypes.c_uint64, 'sent to its neighbours so far, as if in other processes'),
@@ -5781,7 +5821,7 @@ def _wrap_dem_contact_fn(function, context, struct):
 
 
 ContactFn = Function(_wrap_dem_contact_fn, None, ctypes.POINTER(ContactInfo), ctypes.POINTER(Real), ctypes.c_void_p)
-ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as desc.law_memory, and one more if a pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all; impulses: 17); vectors as seen from a. Values that the function writes there count from the next step on.'
+ContactFn.__doc__ = 'Receives one contact and its history. memory: as many reals as World(law_memory=...), and one more if a pair has static friction, which is 1 while the contact slides (built-in laws: 0 to 10 in all; impulses: 17); vectors as seen from a. Values that the function writes there count from the next step on.'
 
 
 structs = [Vec3, Box, Quat, Pose, Material, Wall, Field, Group, Shape, Body, ContactWho, Contact, ContactEnergy, ContactForce, Allocator, ContactRows, WorldDesc, MaterialDesc, Pair, Coefficients, Region, Sizes, BodyState, Bodies, Selection, BodiesMeans, ClusterDesc, ShapeInfo, Ellipsoid, EllipsoidContact, BodyCounts, MotionRow, Motion, Mesh, Profile, SieveDesc, WallLoads, Joint, JointDesc, JointState, RailDesc, RailState, Feed, Outlet, FeedDesc, FeedState, OutletDesc, OutletState, Advice, Finding, CellDesc, CellState, Counters, Ledger, Totals, Observable, TrialsDesc, Trial, Trials, ContactInfo, Event, EventsDesc, Impacts, Wear, Servo, Stress, FieldDesc, FieldData, FieldCell, BodyMeans, MixingDesc, Mixing, Repose, MeshHealth, SpheresFit, WallPart, Grains, ReplayDesc, Output, OutputDesc, Transport, SlabsDesc, Slab, SlabsCounters, Effect]
@@ -5912,8 +5952,8 @@ class World(WorldBase):
     @property
     def desc(self):
         """Returns the desc as given, with the present gravity, domain and dt, the search and integrator in use, and
-        thickness and threads where they were 0. skin: present value; 0 before the first list or if desc.skin < 0.
-        Other zeros stay 0, such as laws, sweeps and tolerance.
+        thickness and threads where they were 0. skin: present value; 0 before the first list or if World(skin=...) <
+        0. Other zeros stay 0, such as laws, sweeps and tolerance.
 
         Returns: WorldDesc
         """
@@ -6123,7 +6163,7 @@ class World(WorldBase):
         return self.bodies[index]
 
     def group(self, name):
-        """Returns the group with this name in desc.groups.
+        """Returns the group with this name in World(groups=...).
 
         Returns: Group
         """
@@ -6175,7 +6215,7 @@ class World(WorldBase):
         group: only members of this group; None means any
         material: only of this material; None means any
         shape: only of this shape; None means any, spheres included
-        radius_min: m, only of these (bounding) radii; max 0 means no limit
+        radius_min, radius_max: m, only of these (bounding) radii; max 0 means no limit
         region: Only bodies whose centre is in this region, or on a periodic axis one of its images. None means
             anywhere.
         bodies: Only these; ids of bodies that are gone do not count. None means any.
@@ -6192,7 +6232,7 @@ class World(WorldBase):
         group: only members of this group; None means any
         material: only of this material; None means any
         shape: only of this shape; None means any, spheres included
-        radius_min: m, only of these (bounding) radii; max 0 means no limit
+        radius_min, radius_max: m, only of these (bounding) radii; max 0 means no limit
         region: Only bodies whose centre is in this region, or on a periodic axis one of its images. None means
             anywhere.
         bodies: Only these; ids of bodies that are gone do not count. None means any.
@@ -6286,8 +6326,8 @@ class World(WorldBase):
     def shape_polygon(self, points):
         """Adds a polygon in a planar world: corners in sequence, clockwise or anticlockwise (count x 2, m, 3 to 98). A
         concave polygon becomes the union of convex pieces, which are shapes too. The mass is density x area x
-        desc.thickness. For contacts the polygon is a prism of thickness 4/3 sqrt(area/pi), which gives it the volume
-        of the sphere with the same area of cross-section. It is an error if sides cross.
+        World(thickness=...). For contacts the polygon is a prism of thickness 4/3 sqrt(area/pi), which gives it the
+        volume of the sphere with the same area of cross-section. It is an error if sides cross.
 
         Returns: Shape
         """
@@ -6442,9 +6482,9 @@ class World(WorldBase):
     def joint(self, *, kind=0, motor=0, a=None, b=None, wall=None, collide=0, point=None, axis=None, speed=0,
             torque=0):
         """Adds a joint. It is an error if the response is "springs", if neither of the two can move, or if a sphere is
-        joined without desc.orientations. A joint ends when one of its bodies or its wall is removed or leaves; its id
-        is then invalid and is never used again. While both bodies are fixed, force, torque and power are 0; the joint
-        acts again when one is released. Checkpoints contain joints.
+        joined without World(orientations=...). A joint ends when one of its bodies or its wall is removed or leaves;
+        its id is then invalid and is never used again. While both bodies are fixed, force, torque and power are 0;
+        the joint acts again when one is released. Checkpoints contain joints.
 
         kind: required: how the two are joined; one of "none", "point", "revolute"
         motor: one of "none", "speed", "torque"
@@ -6500,7 +6540,7 @@ class World(WorldBase):
         frame: the region moves with this wall; None means at rest
         box: m, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0)
         beyond: m: only grains this far or farther from the frame's z axis
-        wanted_min: m, radii meant to leave here; max 0 means no limit
+        wanted_min, wanted_max: m, radii meant to leave here; max 0 means no limit
         radius: m, ascending; a grain counts in the nearest class
         material: only grains of this material; None means all
         keep: 1: grains stay and are only counted; at most 16 such
@@ -6518,9 +6558,9 @@ class World(WorldBase):
     def step_advice(self):
         """Computes the time step that the scene allows as it is now, feeds included. It considers contacts to come.
         Contacts that are already compressed are examined when a run begins, and at least every 1000 steps later
-        (every eight with desc.law_rate). If the step is too large for them, a given desc.dt makes World.step raise
-        TimeStepError, and a chosen step is made smaller. An error if no grain can move, or with "impulses", where
-        contacts have no duration.
+        (every eight with World(law_rate=...)). If the step is too large for them, a given World(dt=...) makes
+        World.step raise TimeStepError, and a chosen step is made smaller. An error if no grain can move, or with
+        "impulses", where contacts have no duration.
 
         Returns: Advice
         """
@@ -6563,12 +6603,13 @@ class World(WorldBase):
         under impulses: by more than this and more than half the range below which contacts are solved), a body that
         is not a sphere rotate by more than 1 rad, a cell strain by more than 0.01 UnstableError a position, velocity,
         force or number of a body is not finite, two bodies overlap by the smaller radius, a body and a wall by that
-        of the body, or a motion or desc.growth returns impossible values FileError, FormatError an output cannot be
-        written; its CSV has other columns. The next call writes it, also one of 0 steps. StoppedError an output
-        stopped the run; desc.unsolved_stops is 1 and the sweeps of a step did not reach the tolerance; or an overlap
-        is above desc.overlap_stop. The step is complete. MemoryError The bodies and the time may have moved already.
-        The step counts (World.steps) when it is complete: the next call completes it as its first step, here or in a
-        world that has read a checkpoint written meanwhile. The bits are those of a run without the interruption.
+        of the body, or a motion or World(growth=...) returns impossible values FileError, FormatError an output
+        cannot be written; its CSV has other columns. The next call writes it, also one of 0 steps. StoppedError an
+        output stopped the run; World(unsolved_stops=1) and the sweeps of a step did not reach the tolerance; or an
+        overlap is above World(overlap_stop=...). The step is complete. MemoryError The bodies and the time may have
+        moved already. The step counts (World.steps) when it is complete: the next call completes it as its first
+        step, here or in a world that has read a checkpoint written meanwhile. The bits are those of a run without the
+        interruption.
         """
         self._ok(self._run(_lib.dem_world_step, self._c, steps) if type(steps) is not int or steps != 1 or
             self._context.kept or self._context.runs else _lib.dem_world_step(self._c, steps))
@@ -6642,9 +6683,9 @@ class World(WorldBase):
         return state
 
     def dt_set(self, dt):
-        """Sets the time step, s (1e-20 to 1e15), from now on. 0: chosen from the scene, as with desc.dt; an error with
-        "impulses". Contact history stays. Checkpoints store the step. If it is too large, the next World.step raises
-        TimeStepError.
+        """Sets the time step, s (1e-20 to 1e15), from now on. 0: chosen from the scene, as with World(dt=...); an error
+        with "impulses". Contact history stays. Checkpoints store the step. If it is too large, the next World.step
+        raises TimeStepError.
         """
         self._ok(_lib.dem_world_dt_set(self._c, dt))
 
@@ -6692,6 +6733,8 @@ class World(WorldBase):
 
         Returns: Ledger
         """
+        if not self.desc.ledger:
+            raise _no_ledger()
         found = _lib.dem_ledger_get(self._c)
         self._ok(0)
         return self._with(found)
@@ -6776,14 +6819,14 @@ class World(WorldBase):
         array = _row(out._type_, count).from_buffer(out)
         return Structs(array)
 
-    def contacts_each(self, fn=None):
+    def contacts_each(self, fn):
         """Calls `fn` for every contact, those with walls included, and returns their number. With a law that has a range
         these are all pairs within the range. Computes forces first if the scene has changed.
         """
         fn = self._callback(ContactFn, fn, 'World.contacts_each: fn')
         return self._number(_lib.dem_contacts_each(self._c, fn, None))
 
-    def bonds_make(self, gap, make=None):
+    def bonds_make(self, gap, make):
         """Calls `make` for every pair of bodies (no walls) with a gap below `gap`, and returns their number, so that
         `make` can write a bond into the contact history of a user-defined law. gap: m, >= 0, at most the range of the
         law for the two smallest grains: law_range + law_range_radii times the sum of their radii. Errors as for
@@ -6809,11 +6852,11 @@ class World(WorldBase):
         self._ok(_lib.dem_candidates_rebuild(self._c))
 
     def events_record(self, *, function=None, user=None, begins=0):
-        """Starts to record contacts; needs desc.ledger. If they are recorded already, replaces the function and keeps
-        the records. Forces and motions have the same bits as without a recording. Checkpoints contain the records,
-        but not the function: call this again after reading one in a new program. Slabs continue the recording of the
-        world from which they are created, if one process holds them all; Slabs.collect returns it. A step that has no
-        memory for the records completes, stops the recording and fails with MemoryError.
+        """Starts to record contacts; needs World(ledger=...). If they are recorded already, replaces the function and
+        keeps the records. Forces and motions have the same bits as without a recording. Checkpoints contain the
+        records, but not the function: call this again after reading one in a new program. Slabs continue the
+        recording of the world from which they are created, if one process holds them all; Slabs.collect returns it. A
+        step that has no memory for the records completes, stops the recording and fails with MemoryError.
 
         function: called after each step for the contacts that have ended in it; None means no call. The contacts are
             in the order of their ids, for any number of threads and slabs.
@@ -6854,8 +6897,8 @@ class World(WorldBase):
     @property
     def stress(self):
         """Computes stress and fabric of the present state in one pass over bodies and contacts. The domain must have an
-        extent along all axes (planar: along x and y; its depth is desc.thickness). An error if bodies or walls have
-        changed since the last step; then call World.contacts_each first (see World.contacts).
+        extent along all axes (planar: along x and y; its depth is World(thickness=...)). An error if bodies or walls
+        have changed since the last step; then call World.contacts_each first (see World.contacts).
 
         Returns: Stress
         """
@@ -6868,13 +6911,13 @@ class World(WorldBase):
             radius_max=0, stress=0, width=0, group=None, variance=0, bodies=0):
         """Adds a field, and returns its id. Steps sample it from then on.
 
-        box: m, required: what the cells divide. In planar worlds cells are desc.thickness deep, whatever the extent
-            of the box along z, which must contain 0.
+        box: m, required: what the cells divide. In planar worlds cells are World(thickness=...) deep, whatever the
+            extent of the box along z, which must contain 0.
         cells: required, >= 1: along each axis, at most 2^28 in all
-        start: s, window of time; end 0 means no end
+        start, end: s, window of time; end 0 means no end
         interval: s, from start on; 0 means every 100 steps of the present dt
         material: only grains of this material; None means all grains
-        radius_min: m, only of these (bounding) radii; max 0 means any
+        radius_min, radius_max: m, only of these (bounding) radii; max 0 means any
         stress: 1: also flux, stress and contacts; visits every contact
         width: m, of coarse graining; 0 means none. Each grain is then spread by Lucy's function of reach c = 2 width
             [GOL10], 105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 (planar: 5/(pi c^2) in place of the first factor),
@@ -7089,9 +7132,9 @@ class World(WorldBase):
 
     def vtp_write(self, path):
         """Writes the bodies for ParaView (VTP): points with radius, velocity, spin, id, material and body_reals, with
-        desc.groups also groups (bit id - 1: in that group). A cluster or union is one point per sphere or piece, all
-        with its id. If bodies have orientations, also the orientation of the piece (quaternion w x y z) and its
-        semi_axes (m). To draw them in ParaView: Glyph, a sphere of radius 1, scaled by semi_axes, rotated by
+        World(groups=...) also groups (bit id - 1: in that group). A cluster or union is one point per sphere or
+        piece, all with its id. If bodies have orientations, also the orientation of the piece (quaternion w x y z)
+        and its semi_axes (m). To draw them in ParaView: Glyph, a sphere of radius 1, scaled by semi_axes, rotated by
         orientation (quaternion).
         """
         self._ok(_lib.dem_vtp_write(self._c, _text_of(path, 'World.vtp_write: path')))
@@ -7146,10 +7189,10 @@ class World(WorldBase):
         """Opens a replay of the world. Close the replay before its world is destroyed.
 
         title: copied; None means the name of the file
-        number: Name of the numbers by which grains can be coloured: one in desc.body_reals, a group in desc.groups
-            (1: member, 0: not), or one for the values of number_fn. None means the first name, or "number". Copied,
-            at most 63 characters.
-        number_fn: returns the number of a body, for every frame; None means one of desc.body_reals
+        number: Name of the numbers by which grains can be coloured: one in World(body_reals=...), a group in
+            World(groups=...) (1: member, 0: not), or one for the values of number_fn. None means the first name, or
+            "number". Copied, at most 63 characters.
+        number_fn: returns the number of a body, for every frame; None means one of World(body_reals=...)
         resolution: m, >= 0, of positions; 0 means 1/32 of the smallest radius in the first frame
         interval: s, >= 0: a run writes frames automatically, the first when it begins and then at the steps nearest
             to multiples of the interval. A frame that cannot be written ends the replay, not the run: Replay.close
@@ -7220,7 +7263,7 @@ class World(WorldBase):
         path: Name of the file, copied. In "grains_####.vtp" the number of the output replaces ####; it is 0 at
             `start`. Without # the file is replaced each time. The path of a CSV file has no #. "call": or None.
         interval: s, required, 1e-12 to 1e15
-        start: s, times of the first and the last; end 0 means no last
+        start, end: s, times of the first and the last; end 0 means no last
         wall: CSV: what a line contains. One of five: the loads of this wall, as Wall.loads_csv_write; the counts of
             an outlet; the mixing of two components, if mixing.cells are set; the values that `values` writes, with
             `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of these is set, steps,
@@ -7229,9 +7272,9 @@ class World(WorldBase):
             (StoppedError).
         mixing: CSV: see above
         field: FIELD_CSV: required
-        z0: m, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with World.output_every:
-            over desc.thickness (planar), over desc.domain along z if it has an extent, or else from the lowest to the
-            highest body
+        z0, z1: m, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with
+            World.output_every: over World(thickness=...) (planar), over World(domain=...) along z if it has an
+            extent, or else from the lowest to the highest body
         outlet: CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as in
             OutletState
         Returns: Output
@@ -7261,7 +7304,7 @@ class World(WorldBase):
         axis: 0, 1, 2: borders are planes x, y, z = const
         count: required, 1 to 1024: number of slabs in all processes; only runs with the same number have the same
             bits
-        first: this process holds the slabs first to first + local - 1; local 0 means all
+        first, local: this process holds the slabs first to first + local - 1; local 0 means all
         transport: required if another process holds slabs
         balance: borders move if the work of the busiest slab exceeds this many times the mean, >= 1; 0 means 1.1.
             Below 0 borders do not move.
@@ -7296,7 +7339,7 @@ class World(WorldBase):
     def report(self, out=None):
         """Prints the report: bodies, time step and what limits it, contact detection, laws and effects, what the scene
         contains but has not happened, the largest overlap, pairs of materials, loads of walls, joints, feeds,
-        outlets, and the ledger. It calls a user-defined force field and desc.growth once per body.
+        outlets, and the ledger. It calls a user-defined force field and World(growth=...) once per body.
         """
         return self._print(_lib.dem_world_report, out, self._c)
 

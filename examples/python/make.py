@@ -122,7 +122,7 @@ def parted(doc, names):
     parts = [re.sub("^(and|%s:) " % name, "", part) for name, part in zip(names, parts)]
     for i, part in enumerate(parts[1:], 1):                 # J, lost on it by sliding; by the normal law
         found = re.match(r"(by|to|of) ", part)
-        at = parts[0].find(" %s " % found.group(1)) if found else -1
+        at = parts[0].find(" %s " % found.group(1)) if found and not parts[0].startswith(found.group(1) + " ") else -1
         if at > 0:
             parts[i] = parts[0][:at + 1] + part
     return [head + part + tail for part in parts]
@@ -327,6 +327,12 @@ class Writer:
             self.spoken.update(DEM_RAIL_="dem.RAIL_")
         for pattern, words in SAY:
             text = re.sub(pattern, words, text)
+        def field(found):
+            name, value = found.group(1), found.group(2)
+            if name not in [f.name for f in h.structs["dem_world_desc"][0]]:
+                return found.group(0)[len("desc."):]
+            return "World(%s=%s)" % (name, value or "...")
+        text = re.sub(r"\bdesc\.(\w+)(?: (?:is|=) (\d+))?(?!\w|\()", field, text)
         return re.sub(r"\b(dem_\w+|DEM_\w+)(\(\))?", lambda m: self.spoken.get(m.group(1), m.group(0)), text).replace("World.World.", "World.")
 
     def write(self, text=""):
@@ -530,6 +536,8 @@ class Writer:
         self.write("\n\n@_struct\nclass %s(%s):" % (camel(name), BASES.get(name) or ("Id" if name in self.ids else "Struct")))
         self.write(doc_lines(4, self.say(doc) or "The id of a %s." % name[4:]))
         self.write("    c_name = %r" % name)
+        if name in USES:
+            self.write("    uses = {%s}" % ",\n            ".join("%r: %r" % item for item in USES[name].items()))
         counts = self.counts(name, fields)
         if counts:
             self.write("    counts = %r" % counts)
@@ -538,7 +546,7 @@ class Writer:
         for row, kind, note in rows:
             head = "        (%r, %s, " % (row, kind)
             if note == last and note:
-                self.write(head + '""),')
+                self.write(head + 'None),')
                 continue
             last = note
             lines = textwrap.wrap(note, 100, drop_whitespace=False, break_long_words=False, break_on_hyphens=False)
@@ -636,7 +644,7 @@ class Writer:
             if a.name == "user":
                 pass_on.append("None")
             elif kind in h.calls:
-                params.append((a.name, "None" if all(x.name == "user" for x in args[i + 1:]) else None))
+                params.append((a.name, "None" if kind == "dem_progress_fn" or re.search(r"\b%s(?: and user)?: or null" % a.name, f.doc) else None))
                 value = a.name
                 if kind == "dem_progress_fn":
                     value = "_go_on if %s is None else %s" % (a.name, a.name)
@@ -767,7 +775,11 @@ class Writer:
                 if m.name in taken:
                     continue
                 words = self.words(m)
-                if (m.doc or words) and (m.doc != note or words) and not hidden(m):
+                if hidden(m):
+                    continue
+                if m.doc and m.doc == note and not words:   # shares the comment of the field before it
+                    docs[-1] = re.sub("(?=: )", ", " + m.name, docs[-1], count=1)
+                elif m.doc or words:
                     docs.append("%s: %s" % (m.name, "; ".join(filter(None, (self.say(m.doc), words)))))
                 note = m.doc
             if base:
@@ -1010,7 +1022,7 @@ class Writer:
             kind = HANDLES[f.type]
             return ["return %s(%s._pointer(%s), %s%s)" % (kind, world, call, world, ", path" if "path" in dict(params) else "")]
         if f.type in h.structs:
-            return ["found = " + call, "%s._ok(0)" % world, "return %s._with(found%s)" % (
+            return ["if not self.desc.ledger:", "    raise _no_ledger()"]*(f.name == "dem_ledger_get") + ["found = " + call, "%s._ok(0)" % world, "return %s._with(found%s)" % (
                 world, ", _world_call" if f.name == "dem_world_desc_get" else "")]
         if f.type == "int" and outs:
             o, size = outs[0]
@@ -1173,6 +1185,11 @@ class Writer:
 
 
 SPOILING = {"dem_%s_fn" % name for name in "law law_rows law_rate reals body_force motion".split()}  # state is lost if they fail
+USES = {"dem_motion": {         # fields that only some kinds use
+    "velocity": ("translating", "oscillating", "servo"), "speed": ("rotating",), "amplitude": ("oscillating",), "frequency": ("oscillating",),
+    "phase": ("oscillating",), "start": ("translating", "rotating", "oscillating", "table", "servo"), "function": ("user",),
+    "ramp": ("translating", "rotating", "oscillating", "servo"), "load": ("servo",), "area": ("servo",), "travel": ("servo",),
+    "table": ("table", "servo"), "table_repeats": ("table",)}}
 BASES = {"dem_vec3": "Vector", "dem_quat": "Numbers"}
 # functions that dem.py adds to the library; loaded where they are there
 EXTRA = [("dempy_rows", "ctypes.c_int", "ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_int, ctypes.c_void_p"),
