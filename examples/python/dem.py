@@ -370,7 +370,7 @@ def build(header=None, folder=None):
     with tempfile.TemporaryDirectory(dir=folder) as work:
         command = _compiler(work)
         with open(os.path.join(work, "dem.c"), "w") as file:
-            file.write(source)
+            file.write(source.replace('"dem.h"', '"%s"' % os.path.basename(header)))
         command += ["-I" + os.path.dirname(header), os.path.join(work, "dem.c"), "-o", os.path.join(work, "dem.so"), "-lm"]
         if "-lomp" in command:
             command.append(command.pop(command.index("-lomp")))
@@ -510,7 +510,7 @@ def _number(value, kind):
         value = value.value
     if names or kind in _LIMITS:
         try:
-            whole = operator.index(value)
+            whole = operator.index(None if names and isinstance(value, bool) else value)
         except TypeError:
             raise TypeError("%s, %s is wanted" % (_given(value), "a word or a number of %s" % kind.__name__ if names
                                                   else "a whole number")) from None
@@ -825,7 +825,8 @@ def _binds(function, where, own):
             if error.__traceback__.tb_next is not None:     # of the function, not of its call
                 raise
             found = _unbound(function, where if not own or "." not in where else "%s.%s" % (
-                getattr(values[0], "__name__", type(values[0]).__name__), function.__name__), values[own:], fields)
+                values[0].__name__ if isinstance(values[0], type) else type(values[0]).__name__ if isinstance(values[0], (Handle, Struct, Rows)) else
+                where.partition(".")[0], function.__name__), values[own:], fields)
         raise found or ArgumentTypeError("%s: the arguments do not fit" % where)
     return bind
 
@@ -1329,6 +1330,12 @@ class Struct(ctypes.Structure):
             if name in _WORDS and isinstance(value, (list, tuple)) and all(isinstance(word, str) for word in value):
                 value = " ".join(value)
             try:
+                inner = kind.kind if isinstance(kind, View) else getattr(kind, "_type_", None)
+                if isinstance(inner, type) and issubclass(inner, Struct) and not getattr(kind, "one", False):     # several structs, whose functions are kept
+                    if isinstance(value, (inner, dict)):
+                        value = [value]
+                    if isinstance(value, (list, tuple)):
+                        value = [inner._made(item) if isinstance(item, dict) else item for item in value]
                 if isinstance(kind, View):
                     if isinstance(value, ctypes._Pointer):  # nobody knows its length
                         pointers = True
@@ -1336,8 +1343,7 @@ class Struct(ctypes.Structure):
                     elif value is not None and kind.one:
                         _set(self, "_" + name, ctypes.pointer(kind.kind._made(value)))
                     elif value is not None:
-                        array = [value] if isinstance(value, kind.kind) else value
-                        array = _array(array, kind.kind, kind.width)
+                        array = _array(value, kind.kind, kind.width)
                         sizes[name] = len(array)//kind.width
                         _set(self, "_" + name, ctypes.cast(array, kind.c))
                     else:
@@ -1676,7 +1682,9 @@ class Row:
 @functools.lru_cache(1024)
 def _row(kind, length):
     """The type of an array of this length."""
-    return type("Row", (Row, ctypes.Array), {"_type_": kind, "_length_": length, "__module__": __name__})
+    letters = "xyz" if length == 3 and kind in _NUMBERS else ""
+    return type("Row", (Row, ctypes.Array), dict({"_type_": kind, "_length_": length, "__module__": __name__}, **{
+        letter: property(operator.itemgetter(i)) for i, letter in enumerate(letters)}))
 
 
 @functools.lru_cache(1024)
@@ -2037,27 +2045,46 @@ def _no_attribute(thing, name):
     kind = type(thing)
     if name[:1] == "_" or name in ("shape", "dtype", "tolist"):     # what numpy and others look for
         return AttributeError("%s has no attribute %r" % (kind.__name__, name))
-    one, parts = kind.__name__.lower(), _PARTS.get(kind.__name__, {})
-    found = ["%s.%s.%s" % (one, part, name) for part in sorted(parts, key=lambda part: part not in ("state", "desc"))
-             if name in parts[part].kinds]
+    one, parts = kind.__name__.lower(), dict(_PARTS.get(kind.__name__, {}))
+    if parts.pop("bodies_memory", None):                    # its rows change their order
+        parts["bodies"] = Bodies
+    order = sorted(parts, key=lambda part: {"desc": 1, "state": 1, "bodies": 2, "totals": 2, "ledger": 4}.get(part, 3))
+    meant = _MEANT.get(name) or re.sub("^(set|get|add)_", "", name)
+    found = ["%s.%s.%s" % (one, part, meant) for part in order if meant in parts[part].kinds]
     words = [word for word in dir(kind) if word[0] != "_" and word not in dir(Struct)]
-    if name + "s" in words:
-        found.insert(0, "%s.%ss" % (one, name))
+    if meant + "s" in words:
+        found.insert(0, "%s.%ss" % (one, meant))
+    if meant != name and meant in words:
+        found.insert(0, "%s.%s" % (one, meant))
     if name.endswith("_add") and name[:-4] in words:        # as in C
         found.insert(0, "%s.%s" % (one, name[:-4]))
+    if name in ("walls", "materials", "shapes", "feeds", "outlets", "fields") and kind.__name__ == "World":
+        return NoFieldError("World has no attribute %r; keep what the calls that add them return, world.%s(...)" % (name, {
+            "walls": "wall_plane", "shapes": "shape_ellipsoid"}.get(name, name[:-1])))
     if found:
-        return NoFieldError("%s has no attribute %r; read %s" % (kind.__name__, name, " or ".join(found[:3])))
+        return NoFieldError("%s has no attribute %r; read %s" % (kind.__name__, name, " or ".join(found[:2])))
     import difflib
 
-    fields = {field: "%s.%s" % (part, field) for part in sorted(parts) for field in parts[part].kinds}
-    near = difflib.get_close_matches(name, words + list(fields), 2)
+    fields = {field: "%s.%s" % (part, field) for part in reversed(order) for field in parts[part].kinds}
+    near = difflib.get_close_matches(meant, words + [field for field in fields if field not in words], 2)
+    if not near or name.startswith("add_"):
+        near = [word for word in words if meant in word.split("_")][:3] or near
     return NoFieldError("%s has no attribute %r%s" % (kind.__name__, name, "; did you mean %s?" % " or ".join(
-        "%s.%s" % (one, fields.get(word, word)) for word in near) if near else _near(name, words)))
+        "%s.%s" % (one, fields.get(word, word) if word not in words else word) for word in near) if near else _near(name, words)))
+
+
+_MEANT = {      # names that other codes use
+    "angular_velocity": "spin", "omega": "spin", "save": "checkpoint_write", "load": "checkpoint_read", "dump": "checkpoint_write",
+    "angular_velocities": "spins", "set_dt": "dt_set"}
 
 
 def _no_groups(name):
     return ArgumentError("World.group: %s, but this world has no groups; name them when you make it: dem.World(groups=%r)" % (
         _given(name), name))
+
+
+def _seen(contact, memory):
+    """For world.contacts_each() without a function, which counts."""
 
 
 def _no_ledger():
@@ -2088,12 +2115,19 @@ def _desc_field(found):
 
 _PHRASES = (        # of error messages of dem.h, and what is written in Python
     (r"start from DEM_SIZES and set what this kind needs", "give the fields that this kind needs"),
-    (r"start from DEM_[A-Z]+(?:_DESC)? and set (?=\w+$)", "give only the fields that differ from their defaults, and "),
-    (r"start from DEM_[A-Z]+(?:_DESC)?(?: and set only what differs)?", "give only the fields that differ from their defaults"),
+    (r"start from DEM_[A-Z]+(?:_DESC)? and set (?=\w+$)", "give "),
+    (r"; start from DEM_[A-Z]+(?:_DESC)?(?: and set only what differs)?", ""),
     (r"start from dem_pair_get and change only what differs", "give only the fields that change"),
     (r"^(\w+) is 0([^,;]*, must be [^;]*); set it in the desc before the call", r"\1 is 0\2; give \1=..."),
     (r"; set it in the desc before the call", ""),
     (r"\b(is|are) null\b", r"\1 None"),
+    (r"\bnull\b", "None"),
+    (r"; give its address\b", "; give one"),
+    (r"\bset motion\.(\w+)", r"give \1=..."),
+    (r'as \{"height", "m", dem_observer_height, 0, 0\}', 'as dem.Observable(name="height", unit="m", function=dem.World.observer_height)'),
+    (r"\bfirst call dem_world_step\b", "first call world.step()"),
+    (r"\bdem_contacts_each, which", "world.contacts_each(), which"),
+    (r"; start from DEM_[A-Z_]+(?=; |$)", ""),
     (r"set desc\.boundary\[(\d)\] to DEM_BOUNDARY_PERIODIC", r"make axis \1 periodic with World(boundary=...)"),
     (r"an output of kind DEM_OUTPUT_CALL", "an output of kind 'call', world.output(kind='call', function=...)"),
     (r"\bdesc\.(\w+) = (\w+)", r"World(\1=\2)"),
@@ -2354,8 +2388,8 @@ class Handle:
 class _Film:
     """An open replay of the library; at: None when it is closed."""
 
-    def __init__(self, at):
-        self.at = at
+    def __init__(self, at, path):
+        self.at, self.path = at, path
 
 
 class _Memory:
@@ -2369,7 +2403,13 @@ class _Memory:
     def complete(self, film):
         at, film.at = film.at, None
         self.films.discard(film)
-        return _lib.dem_replay_close(at)
+        result = _lib.dem_replay_close(at)
+        if not result:
+            with open(film.path, "rb") as page:
+                if not any(b'<script type="dem/frame">' in line for line in page):
+                    warnings.warn("%s has no frames and shows nothing: give World.replay(interval=...) before a run, or call "
+                                  "Replay.frame_write" % film.path, stacklevel=5)
+        return result
 
     def __del__(self):
         try:
@@ -2423,6 +2463,9 @@ class WorldBase(Handle):
             if twice:
                 raise ArgumentError("World: %s: %r is given twice; names must differ" % (name, twice[0]))
         self._context.memory, self._context.vectors = desc.law_memory, desc.law_vectors
+        law = desc._functions.get(("law",))
+        if not desc.law_who and "who" in getattr(getattr(law, "__code__", None), "co_names", ()):
+            warnings.warn("World: law reads c.who, which is zeros unless you give law_who=1", stacklevel=5)
         self._context.reals = len((desc.body_reals or "").split())
         if "law" in functions:
             for renew in _PROOFS:
@@ -2433,7 +2476,7 @@ class WorldBase(Handle):
             text = (_lib.dem_world_create_error_get(bound) or b"").decode()
             name = text.partition(": ")[2].partition(" ")[0]
             value = getattr(desc, name, None) if name in desc.kinds else None
-            raise ArgumentError(_in_python(text) + ("; %s=%r is given" % (name, value) if isinstance(value, (int, float)) else ""))
+            raise ArgumentError(_in_python(text) + ("; %s=%r is given" % (name, value) if type(value) in (int, float) else ""))
         self._memory = _Memory(at, self._context)
 
     @classmethod
@@ -2500,7 +2543,7 @@ class ReplayBase(Handle):
     """What a Replay has beside the functions of dem.h. It is recorded until it or its world is closed."""
 
     def __init__(self, at, world, path):
-        self._film, self._world, self._context, self._memory, self._path = _Film(at), world, world._context, world._memory, path
+        self._film, self._world, self._context, self._memory, self._path = _Film(at, path), world, world._context, world._memory, path
         self._memory.films.add(self._film)
 
     @property
@@ -2528,10 +2571,6 @@ class ReplayBase(Handle):
         result = self._memory.complete(self._film)
         if result:
             self._raise(_ERRORS[result])
-        with open(self._path, "rb") as page:
-            if not any(b'<script type="dem/frame">' in line for line in page):
-                warnings.warn("%s has no frames and shows nothing: give World.replay(interval=...) before a run, or call "
-                              "Replay.frame_write" % self._path, stacklevel=4)
 
 
 class SlabsBase(Handle):
@@ -2612,7 +2651,7 @@ def _rows_of(name):
     return "_" + name, kind.kind, getattr(Bodies, "_" + name).offset, kind.shape[1] if len(kind.shape) > 1 else 0
 
 
-_SETTERS = {"reals": "call world.bodies_reals_set(array)", "groups": "call world.bodies_group_set(selection, group, member)",
+_SETTERS = {"groups": "call world.bodies_group_set(selection, group, member)",
             "orientations": "call body.set(orientation=...) for each body", "masses": "a mass follows from the density of the material "
             "and the radius; call body.radius_set(radius)"}
 _SETTERS.update(dict.fromkeys(("radius", "radii", "radiuses"), "call body.radius_set(radius) for each body"))
@@ -2630,7 +2669,7 @@ class Rows:
     orientations (N x 4: w, x, y, z), shapes, reals (N x real_count), rates, groups. world.bodies_memory has the arrays of
     dem.h without a copy, in an order that changes while the world runs.
 
-    An assignment sets all rows: world.bodies.velocities = array of shape (N, 3); so do positions and spins."""
+    An assignment sets all rows: world.bodies.velocities = array of shape (N, 3); so do positions, spins and reals."""
     __slots__ = ("_world",)
 
     def __init__(self, world):
@@ -2727,9 +2766,18 @@ class Rows:
         columns.update((name, [row[i] for row in rows]) for i, name in enumerate(names))
         return columns
 
+    def _in_memory(self, array, width):
+        """Rows in the order of world.bodies, as an array in the order of dem.h."""
+        found, moved = self._struct(), type(array)()
+        for i, row in enumerate(sorted(range(found.count), key=found.slots.__getitem__)):
+            moved[width*row:width*row + width] = array[width*i:width*i + width]
+        return moved
+
     def __setattr__(self, name, value):
+        if name == "reals":
+            return self._world.bodies_reals_set(value)
         if name not in ("positions", "velocities", "spins"):
-            raise FieldError("World.bodies.%s cannot be set; %s" % (name, _SETTERS.get(name) or "positions, velocities and spins can%s" % (
+            raise FieldError("World.bodies.%s cannot be set; %s" % (name, _SETTERS.get(name) or "positions, velocities, spins and reals can%s" % (
                 _near(name, ("positions", "velocities", "spins", "radii", "reals")) if name not in Bodies.kinds else "")))
         ids = self._all()
         array = _array_of(value, Real, "World.bodies.%s" % name, 3, len(ids))
@@ -6248,10 +6296,11 @@ class World(WorldBase):
 
     def bodies_reals_set(self, reals):
         """The numbers (World(body_reals=...)) of all bodies, count x real_count: sets them, in the order of
-        world.bodies_memory. Values must be finite. Laws use them from the next step on. It is an error if the world
-        has no names of such numbers.
+        world.bodies. Values must be finite. Laws use them from the next step on. It is an error if the world has no
+        names of such numbers.
         """
         reals = _array_of(reals, Real, 'World.bodies_reals_set: reals', self._context.reals, self.bodies.count)
+        reals = self.bodies._in_memory(reals, self._context.reals)
         self._ok(_lib.dem_bodies_reals_set(self._c, reals))
 
     def shape_ellipsoid(self, semi_axes):
@@ -6594,7 +6643,7 @@ class World(WorldBase):
         """
         return self._print(_lib.dem_world_check_print, out, self._c)
 
-    def step(self, steps):
+    def step(self, steps=1):
         """Advances the world by `steps` time steps (>= 0), or to the first step that fails. The error message names that
         step; the steps before it are kept. The first step is not taken while the error message of a call that builds
         the scene is unread (World.error). Errors: ArgumentError an unread message (above), or a scene that cannot
@@ -6819,11 +6868,11 @@ class World(WorldBase):
         array = _row(out._type_, count).from_buffer(out)
         return Structs(array)
 
-    def contacts_each(self, fn):
+    def contacts_each(self, fn=None):
         """Calls `fn` for every contact, those with walls included, and returns their number. With a law that has a range
         these are all pairs within the range. Computes forces first if the scene has changed.
         """
-        fn = self._callback(ContactFn, fn, 'World.contacts_each: fn')
+        fn = self._callback(ContactFn, _seen if fn is None else fn, 'World.contacts_each: fn')
         return self._number(_lib.dem_contacts_each(self._c, fn, None))
 
     def bonds_make(self, gap, make):

@@ -294,7 +294,7 @@ NUMBERS_DOC = ("The numbers (World(body_reals=...)) of %s. Values must be finite
 DOCS = {name: NUMBERS_DOC % what for name, what in (
     ("dem_body_reals_get", "a body, as a copy"), ("dem_body_reals_set", "a body: sets them"), ("dem_wall_reals_get", "a wall, as a copy"),
     ("dem_wall_reals_set", "a wall: sets them"), ("dem_bodies_reals_set", "all bodies, count x real_count: sets them, in the order of "
-                                                                        "world.bodies_memory"))}
+                                                                        "world.bodies"))}
 DOCS["dem_world_error_get"] = ('Returns the error message of the last call on this world that failed; "" if none failed. Exceptions have it already.')
 
 
@@ -646,6 +646,9 @@ class Writer:
             elif kind in h.calls:
                 params.append((a.name, "None" if kind == "dem_progress_fn" or re.search(r"\b%s(?: and user)?: or null" % a.name, f.doc) else None))
                 value = a.name
+                if f.name == "dem_contacts_each":
+                    params[-1] = (a.name, "None")
+                    value = "_seen if %s is None else %s" % (a.name, a.name)
                 if kind == "dem_progress_fn":
                     value = "_go_on if %s is None else %s" % (a.name, a.name)
                 pre.append("%s = %s._callback(%s, %s, %s)" % (a.name, world, camel(kind), value, at(a)))
@@ -669,6 +672,8 @@ class Writer:
                     pre.append("%s = _array_of(%s, %s, %s, %s)" % (
                         a.name, a.name, item, at(a), "1, %s._context.reals" % world if f.name != "dem_bodies_reals_set" else
                         "%s._context.reals, %s" % (world, rows)))
+                    if f.name == "dem_bodies_reals_set":
+                        pre.append("%s = %s.bodies._in_memory(%s, %s._context.reals)" % (a.name, world, a.name, world))
                 elif first:
                     pre.append("%s = _array_of(%s, %s, %s, %d)" % (a.name, source, item, at(a), width))
                     pre.append("count = len(%s)%s" % (a.name, "" if width == 1 else "//%d" % width))
@@ -737,7 +742,7 @@ class Writer:
                 if any_id:
                     self.nulls.setdefault(f.name, set()).add(a.name)
                 last = last or any_id and all(x.pointer or x.type == kind for x in args[i + 1:]) and not any(x.const for x in args[i + 1:])
-                default = "None" if (kind == "dem_box" or any_id) and last else "(1, 0, 0, 0)" if a is args[-1] and a.name == "orientation" else "0" if optional or (f.name, a.name) in ZEROS else None
+                default = "None" if (kind == "dem_box" or any_id) and last else "(1, 0, 0, 0)" if a is args[-1] and a.name == "orientation" else "0" if optional or (f.name, a.name) in ZEROS else "1" if f.name == "dem_world_step" else None
                 params.append((a.name, default))
                 if default == "None":
                     self.nulls.setdefault(f.name, set()).add(a.name)

@@ -1590,8 +1590,8 @@ def _():
                        "walls instead", "make axis 2 periodic with World(boundary=...), or move"),
                       ("create the world with desc.response = DEM_RESPONSE_IMPULSES", "World(response='impulses')"),
                       ("leave desc.solver at DEM_SOLVER_GAUSS_SEIDEL", "World(solver=...) at 'gauss_seidel'"),
-                      ("x is 2; start from DEM_FEED_DESC and set only what differs", "x is 2; give only the fields that differ from their defaults"),
-                      ("x is 2; start from DEM_TRIALS_DESC and set duration", "x is 2; give only the fields that differ from their defaults, and duration"),
+                      ("x is 2; start from DEM_FEED_DESC and set only what differs", "x is 2"),
+                      ("x is 2; start from DEM_TRIALS_DESC and set duration", "x is 2; give duration"),
                       ("in an output of kind DEM_OUTPUT_CALL", "kind='call'"), ("group 3 does not exist, desc.groups names 2", "World(groups=...) names 2")):
         text = dem._in_python("dem_call: " + c)
         assert python in text and not re.search(r"DEM_|desc\.", text), text
@@ -1623,6 +1623,31 @@ def _():
         seen = run(name, **fields)
         same((len(seen), "dem.%s: force.%s is 0" % (name, lost) in seen[0]), (1, True), name)
     same((run("law_spring", kt=8e3, load=1), run("law_mindlin", kt=8e3, kt_step=8e3, load=1), run("law_viscous", ct=1, load=1)), ([], [], []))
+
+
+@test("numbers on bodies are set in the order of world.bodies, observables are dicts, sums have x, y and z")
+def _():
+    world, glass = heap(body_reals="heat age")
+    world.spheres_fill(glass, 2e-3, (0, 0, 0, 0.03, 0.03, 0.03), 60, 1)
+    world.run(0.2)                                          # dem.h sorts its rows
+    wanted = [[float(i), -float(i)] for i in range(60)]
+    same(world.bodies_memory.slots[:] == sorted(world.bodies_memory.slots[:]), False)
+    world.bodies_reals_set(wanted)
+    same((world.bodies.reals.tolist(), list(world.bodies[59].reals)), (wanted, [59.0, -59.0]))
+    world.bodies.reals = wanted[::-1]
+    same(world.bodies.reals.tolist(), wanted[::-1])
+    world.step()
+    same((world.totals.centre.z, world.totals.centre[2] > 0), (world.totals.centre[2], True))
+    calls = []
+    height = dict(name="height", unit="m", function=lambda given: calls.append(1) or given.totals.centre.z)
+    for observables in ([height], [dem.Observable(**height)], dem.Observable(**height), height):
+        del calls[:]
+        same((world.trials_run(duration=1e-3, budget=0.5, observables=observables).observable_count, bool(calls)), (1, True))
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        dem.World(law=lambda c, memory, force: setattr(force, "normal", c.who.radius_a))
+        dem.World(law=lambda c, memory, force: setattr(force, "normal", c.who.radius_a), law_who=1)
+    same(["law_who=1" in str(warning.message) for warning in seen], [True])
 
 
 @test("texts that dem.h prints, docstrings and a replay without frames speak of Python")
@@ -1669,7 +1694,11 @@ def _():
             (TypeError, lambda: world.cell_set(rate="a"), "World.cell_set: rate: "), (TypeError, lambda: world.run(1e-3, "p"), "World.run: progress: 'p'"),
             (ValueError, lambda: dem.World(threads=100), "threads=100"), (ValueError, lambda: dem.World(law_memory=99), "law_memory=99"),
             (ValueError, lambda: world.group("coarse"), "World.group: 'coarse'", "World(groups='coarse')"),
-            (ValueError, lambda: world.contacts, "world.step", "world.contacts_each"), (TypeError, lambda: world.contacts_each(), "fn is missing"),
+            (ValueError, lambda: world.contacts, "world.step", "world.contacts_each"), (TypeError, lambda: world.bonds_make(0.1), "make is missing"),
+            (TypeError, lambda: dem.World(tangent_law=True), "World: tangent_law: True"),
+            (AttributeError, lambda: world.walls, "world.wall_plane("), (AttributeError, lambda: world.set_gravity, "read world.gravity"),
+            (AttributeError, lambda: world.kinetic, "world.totals.kinetic"), (AttributeError, lambda: world.positions, "read world.bodies.positions"),
+            (AttributeError, lambda: world.add_wall, "world.wall_cone or"), (AttributeError, lambda: ball.angular_velocity, "read body.state.spin"),
             (ValueError, lambda: world.ledger, "dem.World(ledger=1)"),
             (TypeError, lambda: world.bodies_remove(group="coarse"), "World.bodies_remove: group: 'coarse'", "write world.group('coarse')"),
             (ValueError, lambda: world.wall_plane(glass, (0, 0, 0), (0, 0, 1)).motion_set(speed=3), "Wall.motion_set: speed: 3", "kind='rotating'"),
@@ -1678,6 +1707,7 @@ def _():
             (ValueError, lambda: dem.World(body_reals=["a", "b", "a"]), "World: body_reals: 'a' is given twice")):
         same(isinstance(raises(kind, call, *words), dem.Error), True, words[0])
     same("first call dem_" in str(raises(dem.Error, lambda: world.contacts)), False)
+    same((world.contacts_each(), len(world.contacts)), (0, 0))
     other, steel = heap()
     ball = other.sphere(steel, 0.01, (0, 0, 1))
     other.close()
