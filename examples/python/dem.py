@@ -4279,11 +4279,13 @@ class MaterialDesc(Struct):
 @_struct
 class Pair(Struct):
     """The contact properties of two materials. Unless World.pair_set sets them, they are mixed from the materials, for
-    walls as for grains: - restitution, the three friction coefficients and stiffness_adhesion by the geometric mean:
-    a coefficient that is 0 in one of the two is 0 in the pair (friction_static 0 means friction); - moduli in series
-    as for Hertz, 1/E* = sum (1 - nu^2)/E and 1/G* = sum (2 - nu)/G; - stiffness by the mean 2 ka kb/(ka + kb) if both
-    give one; otherwise it follows from E*, or is the given one if E* is unknown because a material has no young; -
-    stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu.
+    walls as for grains:
+    - restitution, the three friction coefficients and stiffness_adhesion by the geometric mean: a coefficient that is
+        0 in one of the two is 0 in the pair (friction_static 0 means friction);
+    - moduli in series as for Hertz, 1/E* = sum (1 - nu^2)/E and 1/G* = sum (2 - nu)/G;
+    - stiffness by the mean 2 ka kb/(ka + kb) if both give one; otherwise it follows from E*, or is the given one if
+        E* is unknown because a material has no young;
+    - stiffness_ratio by the geometric mean if both give one, otherwise from the mean nu.
     """
     c_name = 'dem_pair'
     rows = [
@@ -5695,7 +5697,7 @@ def _wrap_dem_output_desc_function(function, context, struct):
 
 
 OutputDescFunction = Function(_wrap_dem_output_desc_function, ctypes.c_int, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p)
-OutputDescFunction.__doc__ = 'CALL: may change the world, but not step it. A return value other than 0 stops the run (StoppedError).'
+OutputDescFunction.__doc__ = 'kind "call": may change the world, but not step it. A return value other than 0 stops the run (StoppedError).'
 
 
 @_struct
@@ -5711,26 +5713,26 @@ class OutputDesc(Struct):
         ('start', ctypes.c_double, 's, times of the first and the last; end 0 means no last'),
         ('end', ctypes.c_double, None),
         ('wall', Wall,
-         'CSV: what a line contains. One of five: the loads of this wall, as Wall.loads_csv_write; the counts '
-         'of an outlet; the mixing of two components, if mixing.cells are set; the values that `values` '
-         'writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of these'
-         ' is set, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max'),
+         'kind "csv": what a line contains. One of five: the loads of this wall, as Wall.loads_csv_write; the '
+         'counts of an outlet; the mixing of two components, if mixing.cells are set; the values that `values`'
+         ' writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of '
+         'these is set, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max'),
         ('columns', str, ''),
         ('values', OutputDescValues, ''),
         ('function', OutputDescFunction,
-         'CALL: may change the world, but not step it. A return value other than 0 stops the run '
+         'kind "call": may change the world, but not step it. A return value other than 0 stops the run '
          '(StoppedError).'),
         ('user', ctypes.c_void_p, 'passed to `values` and `function`; or None'),
-        ('mixing', MixingDesc, 'CSV: see above'),
-        ('field', Field, 'FIELD_CSV: required'),
+        ('mixing', MixingDesc, 'kind "csv": see above'),
+        ('field', Field, 'kind "field_csv": required'),
         ('z0', Real,
-         'm, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with '
+         'm, kind "walls": profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with '
          'World.output_every: over World(thickness=...) (planar), over World(domain=...) along z if it has an '
          'extent, or else from the lowest to the highest body'),
         ('z1', Real, None),
         ('outlet', Outlet,
-         'CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as '
-         'in OutletState'),
+         'kind "csv": grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, '
+         'kg, as in OutletState'),
     ]
 
 
@@ -5947,7 +5949,7 @@ class World(WorldBase):
             contacts are solved. If it is 0, dem.h takes three times the distance that the fastest point of a body or
             wall moves in a step, at most the largest radius R and at least 0.01 R. On a periodic axis of length P it
             is at most the larger of 0.1 R and 0.8 (P/2 - 2 R - skin), with skin 0 unless you set it. The fields that
-            follow apply to impulses only.; one of "springs", "impulses"
+            follow apply to impulses only. One of "springs", "impulses"
         cone: one of "coulomb", "convex"
         solver: one of "gauss_seidel", "jacobi", "apgd", "spectral"
         sweeps: most sweeps over all contacts in a step; 0 means 200
@@ -6620,15 +6622,18 @@ class World(WorldBase):
 
     def check(self):
         """Looks for likely mistakes before a scene runs, and returns them, the most severe first. Nothing moves; the
-        neighbour list is rebuilt if it is out of date. It reports - grains that overlap each other or a wall by more
-        than 1 % of their radius; - grains inside a closed mesh, profile or surface of revolution while others are
-        outside, also grains that feeds will insert. A container that holds all grains is not reported. A mesh is
-        closed if each edge has two triangles; walls that move together count as one mesh; - overlaps above 5 % of a
-        radius to be expected from speed or weight, with the modulus that would keep them below 1 %; - values that
-        suggest units other than m, kg/m3 and Pa; - positions so far from the origin that their last digits do not
-        resolve overlaps; - scenes in which nothing moves, or grains fall for ever; - grains outside an outflow
-        boundary, walls that no grain can reach, materials without use; - a time step that is too large, or 20 times
-        smaller than necessary.
+        neighbour list is rebuilt if it is out of date. It reports
+        - grains that overlap each other or a wall by more than 1 % of their radius;
+        - grains inside a closed mesh, profile or surface of revolution while others are outside, also grains that
+            feeds will insert. A container that holds all grains is not reported. A mesh is closed if each edge has
+            two triangles; walls that move together count as one mesh;
+        - overlaps above 5 % of a radius to be expected from speed or weight, with the modulus that would keep them
+            below 1 %;
+        - values that suggest units other than m, kg/m3 and Pa;
+        - positions so far from the origin that their last digits do not resolve overlaps;
+        - scenes in which nothing moves, or grains fall for ever;
+        - grains outside an outflow boundary, walls that no grain can reach, materials without use;
+        - a time step that is too large, or 20 times smaller than necessary.
 
         Returns: a list of Finding
         """
@@ -6646,19 +6651,22 @@ class World(WorldBase):
     def step(self, steps=1):
         """Advances the world by `steps` time steps (>= 0), or to the first step that fails. The error message names that
         step; the steps before it are kept. The first step is not taken while the error message of a call that builds
-        the scene is unread (World.error). Errors: ArgumentError an unread message (above), or a scene that cannot
-        run, such as a period that is too short, or rolling friction with a solver that ignores it TimeStepError the
-        step is too large for the contacts, or a body or wall would move by more than the smallest radius (a body
-        under impulses: by more than this and more than half the range below which contacts are solved), a body that
-        is not a sphere rotate by more than 1 rad, a cell strain by more than 0.01 UnstableError a position, velocity,
-        force or number of a body is not finite, two bodies overlap by the smaller radius, a body and a wall by that
-        of the body, or a motion or World(growth=...) returns impossible values FileError, FormatError an output
-        cannot be written; its CSV has other columns. The next call writes it, also one of 0 steps. StoppedError an
-        output stopped the run; World(unsolved_stops=1) and the sweeps of a step did not reach the tolerance; or an
-        overlap is above World(overlap_stop=...). The step is complete. MemoryError The bodies and the time may have
-        moved already. The step counts (World.steps) when it is complete: the next call completes it as its first
-        step, here or in a world that has read a checkpoint written meanwhile. The bits are those of a run without the
-        interruption.
+        the scene is unread (World.error). Errors:
+        ArgumentError: an unread message (above), or a scene that cannot run, such as a period that is too short, or
+            rolling friction with a solver that ignores it
+        TimeStepError: the step is too large for the contacts, or a body or wall would move by more than the smallest
+            radius (a body under impulses: by more than this and more than half the range below which contacts are
+            solved), a body that is not a sphere rotate by more than 1 rad, a cell strain by more than 0.01
+        UnstableError: a position, velocity, force or number of a body is not finite, two bodies overlap by the
+            smaller radius, a body and a wall by that of the body, or a motion or World(growth=...) returns impossible
+            values
+        FileError, FormatError: an output cannot be written; its CSV has other columns. The next call writes it, also
+            one of 0 steps.
+        StoppedError: an output stopped the run; World(unsolved_stops=1) and the sweeps of a step did not reach the
+            tolerance; or an overlap is above World(overlap_stop=...). The step is complete.
+        MemoryError: The bodies and the time may have moved already. The step counts (World.steps) when it is
+            complete: the next call completes it as its first step, here or in a world that has read a checkpoint
+            written meanwhile. The bits are those of a run without the interruption.
         """
         self._ok(self._run(_lib.dem_world_step, self._c, steps) if type(steps) is not int or steps != 1 or
             self._context.kept or self._context.runs else _lib.dem_world_step(self._c, steps))
@@ -6667,6 +6675,8 @@ class World(WorldBase):
         """Advances the world by `seconds` of simulated time (>= 0), to the nearest step. Consecutive calls add up:
         twenty of 0.05 s end within half a step of 1 s, because each counts from where the previous one should have
         ended (unless other steps were taken in between). progress: a function, or None. Errors as for World.step.
+
+        progress: progress(world, done, seconds_left), see dem.ProgressFn
         """
         progress = self._callback(ProgressFn, _go_on if progress is None else progress, 'World.run: progress')
         self._ok(self._run(_lib.dem_world_run, self._c, seconds, progress, None))
@@ -6674,6 +6684,8 @@ class World(WorldBase):
     def run_to(self, time, progress=None):
         """Advances the world to a time of its clock, s, not before the present one. Otherwise as World.run. A program
         that has read a checkpoint can thus run to the same end.
+
+        progress: progress(world, done, seconds_left), see dem.ProgressFn
         """
         progress = self._callback(ProgressFn, _go_on if progress is None else progress, 'World.run_to: progress')
         self._ok(self._run(_lib.dem_world_run_to, self._c, time, progress, None))
@@ -6687,6 +6699,8 @@ class World(WorldBase):
         0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: a function, or None. Errors as for World.step; also
         ArgumentError for a feed with neither `limited` nor `end`, and StoppedError if the time is up: the message
         gives the speeds, or the feed that is not done, and the state is intact.
+
+        progress: progress(world, done, seconds_left), see dem.ProgressFn
         """
         progress = self._callback(ProgressFn, _go_on if progress is None else progress, 'World.settle: progress')
         self._ok(self._run(_lib.dem_world_settle, self._c, seconds, speed, progress, None))
@@ -6871,6 +6885,8 @@ class World(WorldBase):
     def contacts_each(self, fn=None):
         """Calls `fn` for every contact, those with walls included, and returns their number. With a law that has a range
         these are all pairs within the range. Computes forces first if the scene has changed.
+
+        fn: fn(contact, memory), see dem.ContactFn
         """
         fn = self._callback(ContactFn, _seen if fn is None else fn, 'World.contacts_each: fn')
         return self._number(_lib.dem_contacts_each(self._c, fn, None))
@@ -6880,6 +6896,8 @@ class World(WorldBase):
         `make` can write a bond into the contact history of a user-defined law. gap: m, >= 0, at most the range of the
         law for the two smallest grains: law_range + law_range_radii times the sum of their radii. Errors as for
         World.contacts_each.
+
+        make: make(contact, memory), see dem.ContactFn
         """
         make = self._callback(ContactFn, make, 'World.bonds_make: make')
         return self._number(_lib.dem_bonds_make(self._c, gap, make, None))
@@ -6922,6 +6940,8 @@ class World(WorldBase):
     def events_open_each(self, fn=None):
         """Calls `fn` for every contact that exists, in the order of ids, and returns their number. It is an error if
         contacts are not recorded.
+
+        fn: fn(event), see dem.EventFn
         """
         fn = self._callback(EventFn, fn, 'World.events_open_each: fn')
         return self._number(_lib.dem_events_open_each(self._c, fn, None))
@@ -7020,7 +7040,7 @@ class World(WorldBase):
         """Measures the dynamic angle of repose in a drum that rotates about `axis` (right-handed, of any length,
         horizontal): positive if the surface rises in the direction in which the bottom of the drum moves. The line is
         fitted to the middle half of the surface. It suits charges that roll or cascade; grains in flight belong to no
-        surface. `box` and errors as above.
+        surface. `box` and errors as for World.repose_heap.
 
         Returns: Repose
         """
@@ -7140,19 +7160,24 @@ class World(WorldBase):
         return profile
 
     def grains_read(self, path):
-        """Reads grains from a file. The contents identify the format; lengths are in m: - text or CSV, one line per
-        grain. Columns are separated by semicolons, tabs, commas or blanks, as in the first line. A decimal comma is
-        allowed between semicolons or tabs. Cells may be quoted; # begins a comment. The first line, or a comment
-        before it, names the columns; without names they are x y z r, or x y z r vx vy vz. An empty cell in a column
-        that is used is an error. - extended XYZ with Properties (OVITO, ASE, World.xyz_write), and dumps of LAMMPS
-        and LIGGGHTS: the first frame. Pass the lines of another frame to World.grains_parse. - legacy VTK, VTP and
-        VTU (ParaView, LIGGGHTS, World.vtp_write) as ASCII, base64 or raw bytes; a compressed file is an error. Names,
-        in upper or lower case: position x y z, or position, pos, points size r or radius, d or diameter velocity vx
-        vy vz, or v, vel, velo, velocity angular velocity wx wy wz, or omega, spin, angular_velocity material
-        material; otherwise type, if it is a number A component may follow a name, as in velocity:0, omegax,
-        Position.X, and then a unit: (m), (mm), (cm), (um), (mm/s), (rad/s). `ignored` lists other columns, and the
-        second of two that mean the same. Each sphere of a file of clusters becomes one grain. Error messages name
-        file, line and reason.
+        """Reads grains from a file. The contents identify the format; lengths are in m:
+        - text or CSV, one line per grain. Columns are separated by semicolons, tabs, commas or blanks, as in the
+            first line. A decimal comma is allowed between semicolons or tabs. Cells may be quoted; # begins a
+            comment. The first line, or a comment before it, names the columns; without names they are x y z r, or x y
+            z r vx vy vz. An empty cell in a column that is used is an error.
+        - extended XYZ with Properties (OVITO, ASE, World.xyz_write), and dumps of LAMMPS and LIGGGHTS: the first
+            frame. Pass the lines of another frame to World.grains_parse.
+        - legacy VTK, VTP and VTU (ParaView, LIGGGHTS, World.vtp_write) as ASCII, base64 or raw bytes; a compressed
+            file is an error.
+        Names, in upper or lower case:
+        position: x y z, or position, pos, points
+        size: r or radius, d or diameter
+        velocity: vx vy vz, or v, vel, velo, velocity
+        angular velocity: wx wy wz, or omega, spin, angular_velocity
+        material: material; otherwise type, if it is a number
+        A component may follow a name, as in velocity:0, omegax, Position.X, and then a unit: (m), (mm), (cm), (um),
+        (mm/s), (rad/s). `ignored` lists other columns, and the second of two that mean the same. Each sphere of a
+        file of clusters becomes one grain. Error messages name file, line and reason.
 
         Returns: Grains
         """
@@ -7313,19 +7338,19 @@ class World(WorldBase):
             `start`. Without # the file is replaced each time. The path of a CSV file has no #. "call": or None.
         interval: s, required, 1e-12 to 1e15
         start, end: s, times of the first and the last; end 0 means no last
-        wall: CSV: what a line contains. One of five: the loads of this wall, as Wall.loads_csv_write; the counts of
-            an outlet; the mixing of two components, if mixing.cells are set; the values that `values` writes, with
-            `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of these is set, steps,
-            bodies, contacts, kinetic and rotational energy (J) and overlap_max
-        function: CALL: may change the world, but not step it. A return value other than 0 stops the run
+        wall: kind "csv": what a line contains. One of five: the loads of this wall, as Wall.loads_csv_write; the
+            counts of an outlet; the mixing of two components, if mixing.cells are set; the values that `values`
+            writes, with `columns` as their names (1 to 32 words as in body_reals, copied); or, if none of these is
+            set, steps, bodies, contacts, kinetic and rotational energy (J) and overlap_max
+        function: kind "call": may change the world, but not step it. A return value other than 0 stops the run
             (StoppedError).
-        mixing: CSV: see above
-        field: FIELD_CSV: required
-        z0, z1: m, WALLS: profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with
+        mixing: kind "csv": see above
+        field: kind "field_csv": required
+        z0, z1: m, kind "walls": profiles are extruded from z0 to z1 (z0 <= z1). If they are equal, as with
             World.output_every: over World(thickness=...) (planar), over World(domain=...) along z if it has an
             extent, or else from the lowest to the highest body
-        outlet: CSV: grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg, as in
-            OutletState
+        outlet: kind "csv": grains that the outlet has counted (total, sorted, gangue, back, held) and their mass, kg,
+            as in OutletState
         Returns: Output
         """
         desc = OutputDesc._of_call('World.output', dict(kind=kind, path=path, interval=interval, start=start, end=end,
@@ -7346,9 +7371,9 @@ class World(WorldBase):
     def slabs(self, *, axis=0, count=0, first=0, local=0, transport=None, balance=0, balance_interval=0):
         """Creates slabs from a world: copies its grains to them, with everything a step needs. The world stays as it is,
         and may be destroyed. Every process builds the same world and passes its own `first` and `local`. Feeds and
-        outlets continue in the slabs. Errors, which World.error(world) returns: impulses, bodies on rails, a deformed
-        cell, a field with variance; a recording of contacts if several processes hold the slabs; processes that have
-        built different scenes.
+        outlets continue in the slabs. Errors, which world.error has: impulses, bodies on rails, a deformed cell, a
+        field with variance; a recording of contacts if several processes hold the slabs; processes that have built
+        different scenes.
 
         axis: 0, 1, 2: borders are planes x, y, z = const
         count: required, 1 to 1024: number of slabs in all processes; only runs with the same number have the same
@@ -7512,8 +7537,9 @@ def law_load(c, f, hold):
 
 
 def law_hertz(c, memory, f):
-    """The normal force of elastic spheres with a dashpot: F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], d: overlap, v:
-    closing speed. The tangential coefficients are kt d^(1/2) [N/m] and ct d^(1/4) [N s/m]. No contact history.
+    """The normal force of elastic spheres with a dashpot:
+    F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], d: overlap, v: closing speed.
+    The tangential coefficients are kt d^(1/2) [N/m] and ct d^(1/4) [N s/m]. No contact history.
     """
     return _lib.dempy_law_hertz(c, memory, f)
 
@@ -7524,18 +7550,20 @@ def law_linear(c, memory, f):
 
 
 def law_hysteretic(c, memory, f):
-    """The normal force of a plastic, possibly sticky contact [ALK07] eq 2.41 to 2.49: F = kun d - (kun - kn) D + cn v,
-    D: depth of the plastic deformation, m loading d = D, so that F = kn d unloading and reloading slope kun; F = 0 at
-    d0 = (1 - kn/kun) D [eq 2.44] adhesion F = -kad d. D shrinks with d here, so that reloading (slope kun) returns to
-    kn d at the D that belongs to this point After each step D is the larger of D and d, but at most d (kun +
-    kad)/(kun - kn). Unloading and adhesion join at d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2),
-    e^2 = kn/kun. Differences from [ALK07]: kad is a magnitude here. It defines kad as a negative slope; with that its
-    eq 2.48 and 2.49 have the wrong sign, and its text calls d_ad both a deformation and a force. The load of friction
-    is F + kad d, which is 0 on the adhesion line. [ALK07] takes |F|, which is 0 where F is 0 and large where the two
-    are pulled apart. Energy: the contact stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed
-    exactly along both lines. Motion along the slope kun loses nothing, so that a grain at rest oscillates there
-    unless the pair has normal_damping (cn). kun must be > 0. Without "hysteretic" a user-defined law sets it in a
-    copy of *c. Contact history: 1 real, D [m].
+    """The normal force of a plastic, possibly sticky contact [ALK07] eq 2.41 to 2.49:
+    F = kun d - (kun - kn) D + cn v, D: depth of the plastic deformation, m
+    loading: d = D, so that F = kn d
+    unloading and reloading: slope kun; F = 0 at d0 = (1 - kn/kun) D [eq 2.44]
+    adhesion: F = -kad d. D shrinks with d here, so that reloading (slope kun) returns to kn d at the D that belongs
+        to this point
+    After each step D is the larger of D and d, but at most d (kun + kad)/(kun - kn). Unloading and adhesion join at
+    d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. Differences from [ALK07]: kad is a
+    magnitude here. It defines kad as a negative slope; with that its eq 2.48 and 2.49 have the wrong sign, and its
+    text calls d_ad both a deformation and a force. The load of friction is F + kad d, which is 0 on the adhesion
+    line. [ALK07] takes |F|, which is 0 where F is 0 and large where the two are pulled apart. Energy: the contact
+    stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed exactly along both lines. Motion along the
+    slope kun loses nothing, so that a grain at rest oscillates there unless the pair has normal_damping (cn). kun
+    must be > 0. Without "hysteretic" a user-defined law sets it in a copy of *c. Contact history: 1 real, D [m].
     """
     return _lib.dempy_law_hysteretic(c, memory, f)
 

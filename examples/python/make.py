@@ -23,7 +23,21 @@ def camel(name):
     return "".join(word.capitalize() for word in re.sub(r"^dem_", "", name).split("_"))
 
 
-def clean(comment):
+ITEM, AFTER = "\1", "\2"         # in a comment: an item of a list or a row of a table begins; the text after a list
+
+
+def clean(comment, lists=False):
+    """The text of a comment. lists: items of lists and rows of tables begin with ITEM."""
+    if lists:
+        lines, within = comment.split("\n"), False
+        for i, line in enumerate(lines[1:], 1):
+            row = re.match(r" {7}(\S.*?) {2,}(\S.*)$", line)
+            if re.match(" {3}- ", line) or row:
+                lines[i], within = ITEM + (row.group(1) + (" " if row.group(1)[-1] in ",;:" else ": ") + row.group(2) if row
+                                           else line.strip()), True
+            elif within and re.match(r" {3}\S", line):
+                lines[i], within = AFTER + line.strip(), False
+        comment = "\n".join(lines)
     text = re.sub(r"\s+", " ", comment.replace("/*", " ").replace("*/", " ")).strip()
     text = re.sub(r" Tests: [^()]*(\([^()]*\)[^()]*)*$", "", text)
     return "" if text.startswith(("----", "-- ")) or text.startswith("--------") or ">>" in text[:8] else text
@@ -163,7 +177,7 @@ class Header:
                 continue
             if rest.startswith("/*"):
                 end = rest.index("*/") + 2
-                comment = clean(rest[:end])
+                comment = clean(rest[:end], lists=True)
                 at += end
                 continue
             if rest.startswith("#"):
@@ -248,8 +262,10 @@ class Header:
 
 def doc_lines(indent, text, more=()):
     """A docstring: the comment, and a paragraph for each further line."""
-    pad = " "*indent
-    lines = textwrap.wrap(text, 118 - indent, break_long_words=False, break_on_hyphens=False) or [""]
+    pad, lines = " "*indent, []
+    for part in re.split("(?=[%s%s])" % (ITEM, AFTER), text):
+        lines += textwrap.wrap(part.strip(ITEM + AFTER + " "), 118 - indent, subsequent_indent="    "*part.startswith(ITEM),
+                               break_long_words=False, break_on_hyphens=False) or [""]
     for line in more:
         if not lines[-1].startswith("    ") and line is more[0]:
             lines.append("")
@@ -267,6 +283,8 @@ def folded(line, width, indent):
 
 # comments of C in the words of Python: pattern, replacement; the first ones first
 SAY = [(r" ?\(>>\w+( has the formulas)?\)|, >>\w+(?=\))", ""), (r" Begin with DEM_\w+_DESC(: they do not)?\.", ""),
+       (r"\b(CALL|CSV|FIELD_CSV|WALLS):", lambda found: 'kind "%s":' % found.group(1).lower()),
+       (r"dem_world_error_get\(world\) returns", "world.error has"), (r"`box` and errors as above", "`box` and errors as for dem_repose_heap_get"),
        (r"\bDEM_SELECTION, all zero,", "Selection()"), (r"\bDEM_MOTION\b", "Motion()"),
        (r" Free (it |the mesh |)with dem_\w+_free\.", ""),
        (r"(Writes|writes) (the .*?|for every effect .*?|positions \(count x 3\) and radii \(count\)),? (at most `capacity` of them, )?and returns their number"
@@ -652,6 +670,8 @@ class Writer:
                 if kind == "dem_progress_fn":
                     value = "_go_on if %s is None else %s" % (a.name, a.name)
                 pre.append("%s = %s._callback(%s, %s, %s)" % (a.name, world, camel(kind), value, at(a)))
+                takes = ", ".join(x.name for x in h.calls[kind].arguments if x.name != "user")
+                docs.append("%s: %s(%s), see dem.%s" % (a.name, a.name, takes, camel(kind)))
                 pass_on.append(a.name)
             elif a.name == "count" and counted:
                 pass_on.append("count")
@@ -785,7 +805,7 @@ class Writer:
                 if m.doc and m.doc == note and not words:   # shares the comment of the field before it
                     docs[-1] = re.sub("(?=: )", ", " + m.name, docs[-1], count=1)
                 elif m.doc or words:
-                    docs.append("%s: %s" % (m.name, "; ".join(filter(None, (self.say(m.doc), words)))))
+                    docs.append("%s: %s" % (m.name, re.sub(r"\.; one of", ". One of", "; ".join(filter(None, (self.say(m.doc), words))))))
                 note = m.doc
             if base:
                 docs.insert(0, "Fields that are not given stay as they are.")
@@ -1144,7 +1164,7 @@ class Writer:
         for m in members:
             words = self.words(m)
             if (m.doc or words) and (m.doc != note or words) and m.type != "void":
-                docs.append("%s: %s" % (m.name, "; ".join(filter(None, (self.say(m.doc), words)))))
+                docs.append("%s: %s" % (m.name, re.sub(r"\.; one of", ". One of", "; ".join(filter(None, (self.say(m.doc), words))))))
             note = m.doc
         init = WORLD % ("\n".join(["    " + lines[0]] + ["            " + line for line in lines[1:]]),
                         doc_lines(8, "Creates an empty world. ArgumentError says which value is out of range.", docs),

@@ -1665,6 +1665,8 @@ def _():
     same([found for text in texts for found in re.findall(r"\bdesc\.\w+", text)], [])
     same("kn, cn: built-in law" in dem.Contact.__doc__ and "kinetic: Pa, pressure positive: of motion, the sum of m v v" in dem.Stress.__doc__
          and "point, axis: m" in dem.Wall.motion_set.__doc__, True)
+    same("\n        - grains that overlap" in dem.World.check.__doc__ and "\n        StoppedError: an output" in dem.World.step.__doc__ and
+         "make: make(contact, memory), see dem.ContactFn" in dem.World.bonds_make.__doc__ and 'kind "csv": what a line' in dem.World.output.__doc__, True)
     path = os.path.join(WORK.name, "empty.html")
     with warnings.catch_warnings(record=True) as seen:
         warnings.simplefilter("always")
