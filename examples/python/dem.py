@@ -1331,7 +1331,8 @@ class Struct(ctypes.Structure):
                 value = " ".join(value)
             try:
                 inner = kind.kind if isinstance(kind, View) else getattr(kind, "_type_", None)
-                if isinstance(inner, type) and issubclass(inner, Struct) and not getattr(kind, "one", False):     # several structs, whose functions are kept
+                if isinstance(inner, type) and issubclass(inner, Struct) and not getattr(kind, "one", False):
+                    # several structs, whose functions are kept
                     if isinstance(value, (inner, dict)):
                         value = [value]
                     if isinstance(value, (list, tuple)):
@@ -2127,7 +2128,6 @@ _PHRASES = (        # of error messages of dem.h, and what is written in Python
     (r'as \{"height", "m", dem_observer_height, 0, 0\}', 'as dem.Observable(name="height", unit="m", function=dem.World.observer_height)'),
     (r"\bfirst call dem_world_step\b", "first call world.step()"),
     (r"\bdem_contacts_each, which", "world.contacts_each(), which"),
-    (r"; start from DEM_[A-Z_]+(?=; |$)", ""),
     (r"set desc\.boundary\[(\d)\] to DEM_BOUNDARY_PERIODIC", r"make axis \1 periodic with World(boundary=...)"),
     (r"an output of kind DEM_OUTPUT_CALL", "an output of kind 'call', world.output(kind='call', function=...)"),
     (r"\bdesc\.(\w+) = (\w+)", r"World(\1=\2)"),
@@ -2392,6 +2392,15 @@ class _Film:
         self.at, self.path = at, path
 
 
+def _has_frames(path):
+    """False if a replay has no frames; True if it cannot be read any more."""
+    try:
+        with open(path, "rb") as page:
+            return any(b'<script type="dem/frame">' in line for line in page)
+    except OSError:
+        return True
+
+
 class _Memory:
     """A world of the library, with its open replays. When neither the World nor a view of its arrays is left, completes
     the replays and destroys the world. The garbage collector ends the objects of a cycle in any order, so a World and a
@@ -2404,11 +2413,9 @@ class _Memory:
         at, film.at = film.at, None
         self.films.discard(film)
         result = _lib.dem_replay_close(at)
-        if not result:
-            with open(film.path, "rb") as page:
-                if not any(b'<script type="dem/frame">' in line for line in page):
-                    warnings.warn("%s has no frames and shows nothing: give World.replay(interval=...) before a run, or call "
-                                  "Replay.frame_write" % film.path, stacklevel=5)
+        if not result and not _has_frames(film.path):
+            warnings.warn("%s has no frames and shows nothing: give World.replay(interval=...) before a run, or call "
+                          "Replay.frame_write" % film.path, stacklevel=5)
         return result
 
     def __del__(self):
