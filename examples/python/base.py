@@ -1064,6 +1064,10 @@ class Struct(ctypes.Structure):
             if made.kind.name.lower() not in cls.uses[name] and getattr(made, name) != getattr(cls(), name):
                 raise ArgumentError("%s: %s: %s, but a wall of kind %r does not use it; it belongs to kind=%s" % (
                     where, name, _given(fields[name]), made.kind.name.lower(), " or ".join(map(repr, cls.uses[name]))))
+        for name in cls.needs.get(made.kind.name.lower(), ()) if "kind" in fields else ():
+            if all(getattr(made, one) == getattr(cls(), one) for one in name.split()):
+                warnings.warn("%s: a wall of kind %r without %s does not move or bears nothing" % (
+                    where, made.kind.name.lower(), " or ".join("%s=..." % one for one in name.split())), stacklevel=4)
         return made
 
     def _put(self, fields, where=None):
@@ -1322,6 +1326,7 @@ class Struct(ctypes.Structure):
         return "%s(%s)" % (type(self).__name__, ", ".join(shown))
 
 
+Struct.needs = {}               # of a kind: fields without which it does nothing
 Struct.uses = {}                # fields that only some of its kinds use: the names of those kinds
 Struct.whole = False            # a sequence must have all fields
 Struct.plain = None             # of the class of a struct that a function may only read: the class without that

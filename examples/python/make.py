@@ -556,6 +556,7 @@ class Writer:
         self.write("    c_name = %r" % name)
         if name in USES:
             self.write("    uses = {%s}" % ",\n            ".join("%r: %r" % item for item in USES[name].items()))
+            self.write("    needs = %r" % NEEDS[name])
         counts = self.counts(name, fields)
         if counts:
             self.write("    counts = %r" % counts)
@@ -1215,6 +1216,7 @@ USES = {"dem_motion": {         # fields that only some kinds use
     "phase": ("oscillating",), "start": ("translating", "rotating", "oscillating", "table", "servo"), "function": ("user",),
     "ramp": ("translating", "rotating", "oscillating", "servo"), "load": ("servo",), "area": ("servo",), "travel": ("servo",),
     "table": ("table", "servo"), "table_repeats": ("table",)}}
+NEEDS = {"dem_motion": {"translating": ("velocity",), "rotating": ("speed",), "oscillating": ("amplitude", "frequency"), "servo": ("load table",)}}
 BASES = {"dem_vec3": "Vector", "dem_quat": "Numbers"}
 # functions that dem.py adds to the library; loaded where they are there
 EXTRA = [("dempy_rows", "ctypes.c_int", "ctypes.c_void_p, ctypes.c_size_t, ctypes.c_size_t, ctypes.c_int, ctypes.c_void_p"),

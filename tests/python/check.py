@@ -1647,7 +1647,12 @@ def _():
         warnings.simplefilter("always")
         dem.World(law=lambda c, memory, force: setattr(force, "normal", c.who.radius_a))
         dem.World(law=lambda c, memory, force: setattr(force, "normal", c.who.radius_a), law_who=1)
-    same(["law_who=1" in str(warning.message) for warning in seen], [True])
+        floor = world.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+        floor.motion_set(kind="oscillating", velocity=(1, 0, 0), amplitude=0.01)
+        floor.motion_set(kind="servo", velocity=(0, 0, 0.01))
+        floor.motion_set(kind="rotating", axis=(0, 0, 1), speed=1)
+    same([word in str(warning.message) for word, warning in zip(("law_who=1", "without frequency=...", "load=... or table=..."), seen)], [True]*3)
+    same(len(seen), 3)
 
 
 @test("texts that dem.h prints, docstrings and a replay without frames speak of Python")
