@@ -12,13 +12,25 @@
    field); law_range in m; 1 if the law needs law_who (its grains then carry eight numbers, all zero); and the function that
    makes a bond (dem_contact_fn, its user is the world). With it paths begin bonded, in contact. docs/laws.md explains the
    lines of the exam and the curves. The exit code is 1 if a law fails a line. Two failures do not count: that of the line
-   `quick`, and that of the line that a built-in law is known to fail. */
+   `quick`, and that of the line that a built-in law is known to fail. On Unix your law runs in a process of its own: if it
+   crashes, ends the program or takes more than 20 s for a line, the exam says so, and the exit code is 1. */
+#if defined(__unix__) || defined(__APPLE__)
+#define _POSIX_C_SOURCE 200112L                  /* fork, alarm */
+#define EXAM_APART 1                             /* a law is examined in a process of its own */
+#include <signal.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
 #include "../dem.h"
 #include "study.h"
 #include "exam.h"
 
 #ifdef LAW_FILE
 #include LAW_FILE
+#ifndef LAW
+#error the file of the law has no line "#define LAW {...}", which names the function: see examples/exam.c
+#endif
 #endif
 
 /* An examined law. known: the line that a built-in law is known to fail, or -1. */
@@ -203,28 +215,80 @@ static void portrait(const exam *e, const exam_sheet *sheet) {
     study_close(page, name);
 }
 
+/* Examines law k, and writes its page. */
+static void examine(int k, void (*tell)(int line)) {
+    const examinee *x = &examinees[k];
+    exam e = exam_of(x->name, x->law, x->user, x->memory, x->vectors, x->stiffness);
+    exam_sheet sheet;
+    int line;
+    e.coefficients = x->coefficients;
+    e.range = x->range;
+    e.who = x->who;
+    e.made = x->made;
+    e.tell = tell;
+    if (exam_take(&e, &sheet) != DEM_OK) { study_fail("%s", sheet.line[0].found); return; }
+    exam_print(&sheet, stdout);
+    portrait(&e, &sheet);
+    for (line = 0; line < EXAM_LINES; line++)
+        if (!sheet.line[line].passed && !(KNOWN && line == x->known) && line != EXAM_COST)
+            study_fail("%s: %s: %s", x->name, sheet.line[line].asks, sheet.line[line].found);
+    study_result(x->name, sheet.passed, "lines passed");
+}
+#ifdef EXAM_APART
+/* The process of a law tells the line that it begins; the last one, EXAM_LINES + 1, means that it has ended by itself. */
+enum { SECONDS = 20 };                           /* for each line, and for the page */
+static int told[2];
+static void tell_line(int line) {
+    const char byte = (char)line;
+    alarm(SECONDS);                              /* ends the process */
+    if (write(told[1], &byte, 1) != 1) _exit(1);
+}
+static int examine_apart(int k) {
+    int status = 0, line = -1;
+    char byte;
+    pid_t child;
+    if (pipe(told)) return -1;
+    fflush(stdout);
+    child = fork();
+    if (child < 0) return -1;
+    if (!child) {
+        int code;
+        close(told[0]);
+        examine(k, tell_line);
+        code = study_end();
+        fflush(stdout);
+        tell_line(EXAM_LINES + 1);
+        _exit(code);
+    }
+    close(told[1]);
+    while (read(told[0], &byte, 1) == 1) line = byte;
+    close(told[0]);
+    waitpid(child, &status, 0);
+    if (line > EXAM_LINES) return WEXITSTATUS(status);
+    printf("FOUND   %-38s  ", line < 0 ? "before the first line" : line < EXAM_LINES ? exam_rows()[line].asks : "the curves of the page");
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
+        printf("the law does not end: more than %d s: look for a loop whose condition stays true\n", SECONDS);
+    else if (WIFSIGNALED(status))
+        printf("the law crashes (signal %d): look for an index beyond its memory, or a null pointer\n", WTERMSIG(status));
+    else printf("the law ends the program (exit code %d): a law returns, and calls neither exit nor abort\n", WEXITSTATUS(status));
+    printf("%s: the exam ended at this line\n%s = 0 lines passed\n", examinees[k].name, examinees[k].name);
+    return 1;
+}
+#endif
+
 int main(int argc, char **argv) {
     const char *out = "build/out/exam";
     const study_option table[] = {{"out", STUDY_TEXT, &out, 0, 0, "", "folder of the results"}};
-    int k, line;
+    int k;
     study_options(argc, argv, "The exam of contact laws: one page per law in build/out/exam. A user-defined law: make law LAW=my_law.h",
                   table, 1);
     study_begin(out);
-    for (k = 0; k < (int)(sizeof examinees/sizeof *examinees); k++) {
-        const examinee *x = &examinees[k];
-        exam e = exam_of(x->name, x->law, x->user, x->memory, x->vectors, x->stiffness);
-        exam_sheet sheet;
-        e.coefficients = x->coefficients;
-        e.range = x->range;
-        e.who = x->who;
-        e.made = x->made;
-        if (exam_take(&e, &sheet) != DEM_OK) { study_fail("%s", sheet.line[0].found); continue; }
-        exam_print(&sheet, stdout);
-        portrait(&e, &sheet);
-        for (line = 0; line < EXAM_LINES; line++)
-            if (!sheet.line[line].passed && !(KNOWN && line == x->known) && line != EXAM_COST)
-                study_fail("%s: %s: %s", x->name, sheet.line[line].asks, sheet.line[line].found);
-        study_result(x->name, sheet.passed, "lines passed");
+#ifdef EXAM_APART
+    if (!KNOWN) {
+        const int code = examine_apart(0);
+        if (code >= 0) return code;
     }
+#endif
+    for (k = 0; k < (int)(sizeof examinees/sizeof *examinees); k++) examine(k, 0);
     return study_end();
 }
