@@ -2855,13 +2855,13 @@ DEM_API dem_result dem_world_run_to(dem_world *world, double time, dem_progress_
 /* Advances the world until its bodies are at rest, for at most `seconds` of simulated time (> 0).
    At rest: at three checks in a row the root mean square speed, weighted by mass, is below `speed`,
    and no body is faster than 10 times that. Spins do not count, because nothing brakes a sphere
-   that spins on a point. Checks are at most sqrt(R/g) apart, the time of a fall by half the mean
-   radius R (without gravity: the time in which `speed` covers R/2). All feeds, also those that
-   begin later, must have inserted all their grains first.
+   that spins on a point. Checks are sqrt(R/g) apart, the time of a fall by half the mean radius R
+   (without gravity: the time in which `speed` covers R/2, at most seconds/4). All feeds, also those
+   that begin later, must have inserted all their grains first.
    speed: m/s, >= 0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: or null.
    Errors as for dem_world_step; also DEM_ERROR_ARGUMENT for a feed with neither `limited` nor
-   `end`, and DEM_ERROR_STOPPED if the time is up: the message gives the speeds, or the feed that is
-   not done, and the state is intact. */
+   `end`, and DEM_ERROR_STOPPED if the time is up: the message gives the speeds, the feed that is
+   not done, or the time that three checks take; the state is intact. */
 DEM_API dem_result dem_world_settle(dem_world *world, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user);
 /* Prints the progress of a run to the FILE that is passed as user, and returns 0: a progress
@@ -27797,8 +27797,7 @@ static void demi_seats_find(dem_world *w) {
 
 /* --- trees --- */
 
-/* Adds the body at one end of a seat to the tree of `root`, unless it has one; root -1: as a root
-   itself. */
+/* Adds the body at one end of a seat to the tree of `root`, or (-1) as a root, if it has none. */
 static void demi_tree_join(demi_solver *s, int seat, int end, int root) {
     const int body = s->seats[seat].ends[end];
     demi_tree_body *t = s->trees + body;
@@ -32604,8 +32603,7 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_vec3 bran
     out->force = c->force;
     out->further = c->corner > 0;
 }
-/* A walk over all contacts of a world: of each work group the pairs of spheres, then the persistent
-   contacts. */
+/* A walk over all contacts: of each work group pairs of spheres, then persistent contacts. */
 typedef struct demi_walk {
     int blind;                     /* set it to 1 only to count: then `info` and `branch` are not
                                       written */
@@ -33529,8 +33527,7 @@ DEM_INLINE void demi_event_ahead(const demi_events *e, int next) {
     DEMI_FETCH(e->last + i);
     DEMI_FETCH(e->sums + i);
 }
-/* Makes room for one more open contact; the table is at most half full. Returns 0 if memory ran
-   out. */
+/* Makes room for one more open contact; the table is at most half full. 0: memory ran out. */
 static int demi_event_widen(dem_world *w) {
     demi_events *e = &w->events;
     const size_t n = (size_t)e->n.open + 1;
@@ -33630,8 +33627,7 @@ static void demi_event_wear(dem_world *w, int32_t wall, int facet, double normal
 
 /* --- contacts of a step --- */
 
-/* Fills in who touches. Returns 1 if the two of the note are exchanged, since b has the lower
-   slot. */
+/* Fills in who touches. Returns 1 if the two of the note are exchanged: b has the lower slot. */
 static int demi_event_key(const dem_world *m, const demi_noted *n, dem_event *key) {
     const dem_body a = dem_body_id_get(m, n->a);
     const dem_body b = n->b < 0 ? demi_no_body : dem_body_id_get(m, n->b);
@@ -35184,8 +35180,7 @@ static double demi_run_from(const dem_world *w) {
     return c->run_steps == c->steps && fabs(c->run_end - c->time) <= (double)c->dt ? c->run_end
                                                                                    : c->time;
 }
-/* Advances the world to the step nearest to `end`, s. Decides for all runs how many steps a time
-   is. */
+/* Advances the world to the step nearest to `end`, s: so many steps are a time for all runs. */
 static dem_result demi_run_until(dem_world *w, const char *call, double end,
                                  dem_progress_fn progress, void *user) {
     const double start = w->clock.time, begun = demi_clock();
@@ -35276,10 +35271,10 @@ static int demi_feed_coming(const dem_world *w) {
     while (i < w->feed_count && demi_feed_at(w, i)->state.done) i++;
     return i < w->feed_count ? i : -1;
 }
-/* Fails because the time of dem_world_settle is over, and says why the bodies are not at rest. */
-static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
+/* Fails because the time of dem_world_settle is over. calm: so many tests found rest. */
+static dem_result demi_unsettled(dem_world *w, double seconds, double speed, int calm) {
     const int i = demi_feed_coming(w);
-    double mean, most = demi_speeds(w, &mean);
+    double mean, look, most = demi_speeds(w, &mean), below = demi_calm(w, speed, &look);
     if (i >= 0) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;
         return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: feed %d "
@@ -35288,6 +35283,10 @@ static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
                          seconds, i + 1, (unsigned long long)f->total,
                          (unsigned long long)f->waiting);
     }
+    if (calm)
+        return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: %g s is too short: rest takes "
+                         "three tests, %.3g s apart; allow at least %.2g s", seconds, look,
+                         2.2*look);
     return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean speed "
                      "%.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; allow more time, "
                      "or find what drives the grains", seconds, mean, most, below, 10*below);
@@ -35301,9 +35300,9 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
     int i, calm = 0;
     if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
         (!(below > 0) && (w->bodies.count || demi_feed_coming(w) >= 0)))
-        return demi_refuse(w, __func__, "seconds is %g and speed is %g m/s; seconds must "
-                           "be > 0, speed >= 0, and > 0 without gravity, from which the default "
-                           "follows; set the speed that counts as rest", seconds, (double)speed);
+        return demi_refuse(w, __func__, "seconds is %g and speed is %g m/s; both must be finite, "
+                           "seconds > 0, speed >= 0, and speed > 0 without gravity, from which its "
+                           "default follows", seconds, (double)speed);
     for (i = 0; i < w->feed_count; i++) {
         const demi_feed *f = demi_feed_at(w, i);
         if (!f->desc.limited && !(f->desc.end > 0))
@@ -35318,8 +35317,10 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
         below = demi_calm(w, (double)speed, &look);
         calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
         if (calm > 2) break;
-        if (end - w->clock.time < (double)w->clock.dt/2) return demi_unsettled(w, seconds, below);
-        look = DEMI_MAX(DEMI_MIN(look, seconds/4), (double)w->clock.dt);
+        if (end - w->clock.time < (double)w->clock.dt/2)
+            return demi_unsettled(w, seconds, (double)speed, calm);
+        if (!(demi_dot(w->desc.gravity, w->desc.gravity) > 0)) look = DEMI_MIN(look, seconds/4);
+        look = DEMI_MAX(look, (double)w->clock.dt);
         result = demi_run_until(w, __func__, DEMI_MIN(demi_run_from(w) + look, end), 0, 0);
         if (result != DEM_OK) return result;
         if (demi_clock() - last > 0.1) {
@@ -35333,8 +35334,7 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
 }
 
 /* demi_isatty: true if a file is a terminal. Standard C has no such function. On the systems below
-   that of the C library is called under another name, as readlink in >>write; on others it returns
-   1. */
+   that of the C library has another name, as readlink in >>write; on others it returns 1. */
 #if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
     !defined(__CYGWIN__)
 int demi_isatty(int file) __asm__("isatty");
@@ -38112,7 +38112,8 @@ static dem_result demi_layout_check(const demi_text *t, const demi_layout *l, co
     return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: columns x, y and r (radius) or d "
                      "(diameter) are needed; %s%s%s; name them in the first line, or add them to "
                      "the export", t->call, t->name, l->has[DEMI_COLUMN_SCALED]
-                     ? "xs is a fraction of the box, so dump x y z" : "not used",
+                     ? "xs is a fraction of the box, so dump x y z"
+                     : g->ignored[0] ? "not used" : "one is missing",
                      g->ignored[0] ? ": " : "", g->ignored);
 }
 
@@ -39673,9 +39674,16 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
     return demi_vtp(&s, path, 0, 0, (int)triangles);
 }
 
+/* Fails because the first line of a CSV file is another one. */
+static dem_result demi_csv_other(dem_world *w, const char *call, const char *path,
+                                 const char *heading) {
+    return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s has other columns than %.100s; remove the "
+                     "file, or give another path", call, path, heading);
+}
 /* Appends a line to a CSV file, and before it the heading if the file is new or empty. There is no
    temporary file here. Instead, the line is written in one piece. If the last line of the file was
-   cut short (by a full disk or a killed run), the new one begins on a line of its own. */
+   cut short (by a full disk or a killed run), the new one begins on a line of its own. A file whose
+   first line is not the heading stays as it is. */
 enum { DEMI_CSV_LINE = 1200 };
 static dem_result demi_csv_append(dem_world *w, const char *call, const char *path,
                                   const char *heading, const char *line) {
@@ -39690,6 +39698,12 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
     file = whole ? fopen(path, "a+b") : 0;
     whole = file && fseek(file, 0, SEEK_END) == 0;
     if (whole && ftell(file) > 0) {
+        const size_t head = strlen(heading);
+        if (fseek(file, 0, SEEK_SET) || fread(text, 1, head, file) != head ||
+            memcmp(text, heading, head) || fgetc(file) != '\n') {
+            fclose(file);
+            return demi_csv_other(w, call, path, heading);
+        }
         whole = fseek(file, -1, SEEK_END) == 0;
         last = whole ? fgetc(file) : last;
         whole = whole && fseek(file, 0, SEEK_END) == 0; /* C requires it between read and write */
@@ -41304,8 +41318,7 @@ static dem_result demi_csv_resume(dem_world *w, const char *path, const char *he
     if (result != DEM_OK || !size) { demi_free(w, data); return result; }
     if (size <= head || memcmp(data, heading, head) || data[head] != '\n') {
         demi_free(w, data);
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s has other columns than %.100s; remove "
-                         "the file, or give another path", call, path, heading);
+        return demi_csv_other(w, call, path, heading);
     }
     for (keep = head + 1; keep < size; keep = (size_t)(line - data) + 1) {
         demi_text text;
@@ -41800,7 +41813,8 @@ static double demi_wall_size(const demi_wall *wall) {
 /* Checks that something can move, that something makes it move, and that gravity does not let it
    fall for ever. */
 static void demi_check_motion(const dem_world *w, demi_findings *f) {
-    const dem_vec3 g = w->desc.gravity;
+    const dem_vec3 g = demi_v(w->desc.gravity.x, w->desc.gravity.y,
+                              w->desc.planar ? 0 : w->desc.gravity.z);
     const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
     dem_vec3 down = pulled ? demi_unit(g) : demi_v(0, 0, 0);
     double lowest = -1e300, floor = -1e300, speed = 0;
@@ -41821,8 +41835,9 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
         driven |= w->walls[i].kind != DEMI_WALL_NONE &&
             (w->walls[i].motion.kind != DEM_MOTION_FIXED || w->walls[i].glides);
     if (!pulled && !forced && !driven && !(speed > 0) && moving)
-        demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
-                  "force field: set gravity (0, 0, -9.81 m/s2) or velocities");
+        demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity%s nor a "
+                  "force field: set gravity (0, %s m/s2) or velocities",
+                  w->desc.planar ? " in the plane" : "", w->desc.planar ? "-9.81, 0" : "0, -9.81");
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
@@ -42354,7 +42369,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
         deep[0] = hertz ? demi_pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
         deep[1] = (hertz ? demi_pow(force/kn, 2.0/3) : force/kn)/r;
         for (k = 0; k < 2; k++) {
-            const int given = w->materials[i].stiffness > 0;
+            const int given = !hertz && w->materials[i].stiffness > 0;
             /* 1.05: so that the rounded value suffices, too */
             const double more = 1.05*demi_pow(deep[k]/DEMI_OVERLAP_LIMIT,
                                          k ? (hertz ? 1.5 : given ? 1 : 1.25)

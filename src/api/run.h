@@ -109,13 +109,13 @@ DEM_API dem_result dem_world_run_to(dem_world *world, double time, dem_progress_
 /* Advances the world until its bodies are at rest, for at most `seconds` of simulated time (> 0).
    At rest: at three checks in a row the root mean square speed, weighted by mass, is below `speed`,
    and no body is faster than 10 times that. Spins do not count, because nothing brakes a sphere
-   that spins on a point. Checks are at most sqrt(R/g) apart, the time of a fall by half the mean
-   radius R (without gravity: the time in which `speed` covers R/2). All feeds, also those that
-   begin later, must have inserted all their grains first.
+   that spins on a point. Checks are sqrt(R/g) apart, the time of a fall by half the mean radius R
+   (without gravity: the time in which `speed` covers R/2, at most seconds/4). All feeds, also those
+   that begin later, must have inserted all their grains first.
    speed: m/s, >= 0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: or null.
    Errors as for dem_world_step; also DEM_ERROR_ARGUMENT for a feed with neither `limited` nor
-   `end`, and DEM_ERROR_STOPPED if the time is up: the message gives the speeds, or the feed that is
-   not done, and the state is intact. */
+   `end`, and DEM_ERROR_STOPPED if the time is up: the message gives the speeds, the feed that is
+   not done, or the time that three checks take; the state is intact. */
 DEM_API dem_result dem_world_settle(dem_world *world, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user);
 /* Prints the progress of a run to the FILE that is passed as user, and returns 0: a progress

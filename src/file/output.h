@@ -102,8 +102,7 @@ static dem_result demi_csv_resume(dem_world *w, const char *path, const char *he
     if (result != DEM_OK || !size) { demi_free(w, data); return result; }
     if (size <= head || memcmp(data, heading, head) || data[head] != '\n') {
         demi_free(w, data);
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s has other columns than %.100s; remove "
-                         "the file, or give another path", call, path, heading);
+        return demi_csv_other(w, call, path, heading);
     }
     for (keep = head + 1; keep < size; keep = (size_t)(line - data) + 1) {
         demi_text text;

@@ -189,6 +189,7 @@ static dem_result demi_layout_check(const demi_text *t, const demi_layout *l, co
     return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: columns x, y and r (radius) or d "
                      "(diameter) are needed; %s%s%s; name them in the first line, or add them to "
                      "the export", t->call, t->name, l->has[DEMI_COLUMN_SCALED]
-                     ? "xs is a fraction of the box, so dump x y z" : "not used",
+                     ? "xs is a fraction of the box, so dump x y z"
+                     : g->ignored[0] ? "not used" : "one is missing",
                      g->ignored[0] ? ": " : "", g->ignored);
 }

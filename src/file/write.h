@@ -745,9 +745,16 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
     return demi_vtp(&s, path, 0, 0, (int)triangles);
 }
 
+/* Fails because the first line of a CSV file is another one. */
+static dem_result demi_csv_other(dem_world *w, const char *call, const char *path,
+                                 const char *heading) {
+    return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s has other columns than %.100s; remove the "
+                     "file, or give another path", call, path, heading);
+}
 /* Appends a line to a CSV file, and before it the heading if the file is new or empty. There is no
    temporary file here. Instead, the line is written in one piece. If the last line of the file was
-   cut short (by a full disk or a killed run), the new one begins on a line of its own. */
+   cut short (by a full disk or a killed run), the new one begins on a line of its own. A file whose
+   first line is not the heading stays as it is. */
 enum { DEMI_CSV_LINE = 1200 };
 static dem_result demi_csv_append(dem_world *w, const char *call, const char *path,
                                   const char *heading, const char *line) {
@@ -762,6 +769,12 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
     file = whole ? fopen(path, "a+b") : 0;
     whole = file && fseek(file, 0, SEEK_END) == 0;
     if (whole && ftell(file) > 0) {
+        const size_t head = strlen(heading);
+        if (fseek(file, 0, SEEK_SET) || fread(text, 1, head, file) != head ||
+            memcmp(text, heading, head) || fgetc(file) != '\n') {
+            fclose(file);
+            return demi_csv_other(w, call, path, heading);
+        }
         whole = fseek(file, -1, SEEK_END) == 0;
         last = whole ? fgetc(file) : last;
         whole = whole && fseek(file, 0, SEEK_END) == 0; /* C requires it between read and write */

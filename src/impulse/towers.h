@@ -178,8 +178,7 @@ static void demi_seats_find(dem_world *w) {
 
 /* --- trees --- */
 
-/* Adds the body at one end of a seat to the tree of `root`, unless it has one; root -1: as a root
-   itself. */
+/* Adds the body at one end of a seat to the tree of `root`, or (-1) as a root, if it has none. */
 static void demi_tree_join(demi_solver *s, int seat, int end, int root) {
     const int body = s->seats[seat].ends[end];
     demi_tree_body *t = s->trees + body;

@@ -192,7 +192,8 @@ static double demi_wall_size(const demi_wall *wall) {
 /* Checks that something can move, that something makes it move, and that gravity does not let it
    fall for ever. */
 static void demi_check_motion(const dem_world *w, demi_findings *f) {
-    const dem_vec3 g = w->desc.gravity;
+    const dem_vec3 g = demi_v(w->desc.gravity.x, w->desc.gravity.y,
+                              w->desc.planar ? 0 : w->desc.gravity.z);
     const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
     dem_vec3 down = pulled ? demi_unit(g) : demi_v(0, 0, 0);
     double lowest = -1e300, floor = -1e300, speed = 0;
@@ -213,8 +214,9 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
         driven |= w->walls[i].kind != DEMI_WALL_NONE &&
             (w->walls[i].motion.kind != DEM_MOTION_FIXED || w->walls[i].glides);
     if (!pulled && !forced && !driven && !(speed > 0) && moving)
-        demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
-                  "force field: set gravity (0, 0, -9.81 m/s2) or velocities");
+        demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity%s nor a "
+                  "force field: set gravity (0, %s m/s2) or velocities",
+                  w->desc.planar ? " in the plane" : "", w->desc.planar ? "-9.81, 0" : "0, -9.81");
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
@@ -746,7 +748,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
         deep[0] = hertz ? demi_pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
         deep[1] = (hertz ? demi_pow(force/kn, 2.0/3) : force/kn)/r;
         for (k = 0; k < 2; k++) {
-            const int given = w->materials[i].stiffness > 0;
+            const int given = !hertz && w->materials[i].stiffness > 0;
             /* 1.05: so that the rounded value suffices, too */
             const double more = 1.05*demi_pow(deep[k]/DEMI_OVERLAP_LIMIT,
                                          k ? (hertz ? 1.5 : given ? 1 : 1.25)

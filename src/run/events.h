@@ -69,8 +69,7 @@ DEM_INLINE void demi_event_ahead(const demi_events *e, int next) {
     DEMI_FETCH(e->last + i);
     DEMI_FETCH(e->sums + i);
 }
-/* Makes room for one more open contact; the table is at most half full. Returns 0 if memory ran
-   out. */
+/* Makes room for one more open contact; the table is at most half full. 0: memory ran out. */
 static int demi_event_widen(dem_world *w) {
     demi_events *e = &w->events;
     const size_t n = (size_t)e->n.open + 1;
@@ -170,8 +169,7 @@ static void demi_event_wear(dem_world *w, int32_t wall, int facet, double normal
 
 /* --- contacts of a step --- */
 
-/* Fills in who touches. Returns 1 if the two of the note are exchanged, since b has the lower
-   slot. */
+/* Fills in who touches. Returns 1 if the two of the note are exchanged: b has the lower slot. */
 static int demi_event_key(const dem_world *m, const demi_noted *n, dem_event *key) {
     const dem_body a = dem_body_id_get(m, n->a);
     const dem_body b = n->b < 0 ? demi_no_body : dem_body_id_get(m, n->b);

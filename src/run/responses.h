@@ -117,8 +117,7 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_vec3 bran
     out->force = c->force;
     out->further = c->corner > 0;
 }
-/* A walk over all contacts of a world: of each work group the pairs of spheres, then the persistent
-   contacts. */
+/* A walk over all contacts: of each work group pairs of spheres, then persistent contacts. */
 typedef struct demi_walk {
     int blind;                     /* set it to 1 only to count: then `info` and `branch` are not
                                       written */

@@ -23,8 +23,7 @@ static double demi_run_from(const dem_world *w) {
     return c->run_steps == c->steps && fabs(c->run_end - c->time) <= (double)c->dt ? c->run_end
                                                                                    : c->time;
 }
-/* Advances the world to the step nearest to `end`, s. Decides for all runs how many steps a time
-   is. */
+/* Advances the world to the step nearest to `end`, s: so many steps are a time for all runs. */
 static dem_result demi_run_until(dem_world *w, const char *call, double end,
                                  dem_progress_fn progress, void *user) {
     const double start = w->clock.time, begun = demi_clock();
@@ -115,10 +114,10 @@ static int demi_feed_coming(const dem_world *w) {
     while (i < w->feed_count && demi_feed_at(w, i)->state.done) i++;
     return i < w->feed_count ? i : -1;
 }
-/* Fails because the time of dem_world_settle is over, and says why the bodies are not at rest. */
-static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
+/* Fails because the time of dem_world_settle is over. calm: so many tests found rest. */
+static dem_result demi_unsettled(dem_world *w, double seconds, double speed, int calm) {
     const int i = demi_feed_coming(w);
-    double mean, most = demi_speeds(w, &mean);
+    double mean, look, most = demi_speeds(w, &mean), below = demi_calm(w, speed, &look);
     if (i >= 0) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;
         return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: feed %d "
@@ -127,6 +126,10 @@ static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
                          seconds, i + 1, (unsigned long long)f->total,
                          (unsigned long long)f->waiting);
     }
+    if (calm)
+        return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: %g s is too short: rest takes "
+                         "three tests, %.3g s apart; allow at least %.2g s", seconds, look,
+                         2.2*look);
     return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean speed "
                      "%.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; allow more time, "
                      "or find what drives the grains", seconds, mean, most, below, 10*below);
@@ -140,9 +143,9 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
     int i, calm = 0;
     if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
         (!(below > 0) && (w->bodies.count || demi_feed_coming(w) >= 0)))
-        return demi_refuse(w, __func__, "seconds is %g and speed is %g m/s; seconds must "
-                           "be > 0, speed >= 0, and > 0 without gravity, from which the default "
-                           "follows; set the speed that counts as rest", seconds, (double)speed);
+        return demi_refuse(w, __func__, "seconds is %g and speed is %g m/s; both must be finite, "
+                           "seconds > 0, speed >= 0, and speed > 0 without gravity, from which its "
+                           "default follows", seconds, (double)speed);
     for (i = 0; i < w->feed_count; i++) {
         const demi_feed *f = demi_feed_at(w, i);
         if (!f->desc.limited && !(f->desc.end > 0))
@@ -157,8 +160,10 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
         below = demi_calm(w, (double)speed, &look);
         calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
         if (calm > 2) break;
-        if (end - w->clock.time < (double)w->clock.dt/2) return demi_unsettled(w, seconds, below);
-        look = DEMI_MAX(DEMI_MIN(look, seconds/4), (double)w->clock.dt);
+        if (end - w->clock.time < (double)w->clock.dt/2)
+            return demi_unsettled(w, seconds, (double)speed, calm);
+        if (!(demi_dot(w->desc.gravity, w->desc.gravity) > 0)) look = DEMI_MIN(look, seconds/4);
+        look = DEMI_MAX(look, (double)w->clock.dt);
         result = demi_run_until(w, __func__, DEMI_MIN(demi_run_from(w) + look, end), 0, 0);
         if (result != DEM_OK) return result;
         if (demi_clock() - last > 0.1) {
@@ -172,8 +177,7 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
 }
 
 /* demi_isatty: true if a file is a terminal. Standard C has no such function. On the systems below
-   that of the C library is called under another name, as readlink in >>write; on others it returns
-   1. */
+   that of the C library has another name, as readlink in >>write; on others it returns 1. */
 #if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
     !defined(__CYGWIN__)
 int demi_isatty(int file) __asm__("isatty");

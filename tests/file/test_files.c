@@ -890,6 +890,13 @@ static void walls(void) {
     TEST("wall loads are appended line by line under one heading") {
         const char *const path = "build/tmp/loads.csv";
         remove(path);
+        file_put(path, "x,y,z,r\n0,0,0,1\n", 16);
+        CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_ERROR_FORMAT);
+        CHECK_STR(dem_world_error_get(world), "has other columns than time,fx");
+        char *other = file_get(path, &size);
+        CHECK(other && size == 16 && !memcmp(other, "x,y,z,r\n0,0,0,1\n", 16));      /* it stays as it was */
+        free(other);
+        remove(path);
         CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_OK);
         CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_OK);
         char *text = file_get(path, &size);
@@ -905,10 +912,10 @@ static void walls(void) {
         text = file_get(path, &size);
         CHECK(text && strncmp(text, "time,", 5) == 0);
         free(text);
-        file_put(path, "time\n0.5,1,2", 12); /* cut short by a full disk */
+        file_put(path, "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts\n0.5,1,2", 58); /* cut short by a full disk */
         CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_OK);
         text = file_get(path, &size);
-        CHECK(text && strncmp(text, "time\n0.5,1,2\n0,", 15) == 0);
+        CHECK(text && strncmp(text + 50, "\n0.5,1,2\n0,", 11) == 0);
         free(text);
         remove(path);
     }

@@ -614,6 +614,13 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "not at rest after 2 s");
         CHECK_NEAR(dem_world_time_get(world), 2, 1e-3);
         CHECK_EQ(dem_world_settle(world, 0, 0, 0, 0), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "both must be finite");
+        dem_world_destroy(world);
+        world = dem_world_create(&desc);                /* a ball that begins to fall is slow for a while */
+        m = scene_material(world, 1e7, 1, 0, 0);
+        dem_sphere_add(world, m, DEM_R(0.005), at(0, 0, 1));
+        CHECK_EQ(dem_world_settle(world, 1e-4, 0, 0, 0), DEM_ERROR_STOPPED);
+        CHECK_STR(dem_world_error_get(world), "too short: rest takes three tests, 0.0226 s apart; allow at least 0.05 s");
         dem_world_destroy(world);
         desc.gravity = at(0, 0, 0);
         world = dem_world_create(&desc);

@@ -412,5 +412,27 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
+    TEST("dem_world_check names what helps: gravity in the plane of a planar world, the modulus for Hertz's law") {
+        int planar;
+        for (planar = 0; planar < 2; planar++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_material_desc stuff = scene_stuff(1e6, 0.5, 0, 0);
+            dem_world *world;
+            dem_material m;
+            desc.planar = planar;
+            desc.gravity = at(0, 0, -9.81);
+            desc.impact_speed = 10;
+            stuff.stiffness = DEM_R(1e5);               /* Hertz's law does not use it */
+            world = dem_world_create(&desc);
+            m = dem_material_add(world, &stuff);
+            dem_wall_plane_add(world, m, at(0, 0, 0), planar ? at(0, 1, 0) : at(0, 0, 1));
+            dem_sphere_add(world, m, DEM_R(0.01), planar ? at(0, 0.01, 0) : at(0, 0, 0.01));
+            CHECK_EQ(body_findings(world, "neither gravity in the plane nor a force field: set gravity (0, -9.81, 0 m/s2)",
+                                   DEM_SEVERITY_WARNING), planar);
+            CHECK_EQ(body_findings(world, "m/s; a Young's modulus of", DEM_SEVERITY_WARNING), 1);
+            CHECK_EQ(body_findings(world, "a stiffness of", DEM_SEVERITY_WARNING), 0);
+            dem_world_destroy(world);
+        }
+    }
     return test_end();
 }
