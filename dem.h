@@ -15168,8 +15168,7 @@ static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem
 }
 
 /* Tests one pair (a < b) and appends it to the list of a's work group d if its gap is below `skin`.
-   Pairs of two fixed bodies, of two ghosts and of materials that ignore each other are left
-   out. */
+   Leaves out pairs of two fixed bodies, of two ghosts, of materials that ignore each other. */
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
@@ -16053,8 +16052,7 @@ static void demi_walled_add(dem_world *w, int first, int end) {
                                                                      : -DEMI_ONLY_SHEET);
     }
 }
-/* Notes the wall candidates of each body, while some surface is a sheet. Returns 0 if memory ran
-   out. */
+/* Notes the wall candidates of each body, while some surface is a sheet. 0: memory ran out. */
 static int demi_walled_note(dem_world *w) {
     const demi_walled none = {0, 0, DEMI_ONLY_SHEET};
     const int n = w->bodies.count + w->join_room;
@@ -17205,8 +17203,7 @@ static dem_result demi_lost(dem_world *w, int body) {
                      DEMI_FARTHEST);
 }
 /* Fails and returns 1 if a search would take minutes. All bodies of a cell are tested with each
-   other, and many share a cell if they lie on each other, or if a few bodies far away stretch the
-   grid. */
+   other, and many share a cell if they lie on each other, or if few far away stretch the grid. */
 static int demi_crowd_refuse(dem_world *w) {
     const int32_t *start = w->cell_start;
     const int n = w->cells[0]*w->cells[1]*w->cells[2];
@@ -17543,10 +17540,13 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     return result;
 }
 
-/* Rebuilds the lists outside of a step: the forces may be those of another scene. */
+/* Rebuilds the lists outside of a step. Contacts of spheres by springs follow from the list; others
+   are those of the last forces, which may belong to another scene. */
 static dem_result demi_list_make(dem_world *w, const char *call) {
     const dem_result result = demi_rebuild(w, call);
-    if (result == DEM_OK && !w->stage.forces_valid) w->stage.list_valid = DEMI_LIST_ALONE;
+    if (result == DEM_OK && !w->stage.forces_valid &&
+        (w->wall_count || w->bodies.shaped || demi_response_is(w, DEMI_MIDWAY)))
+        w->stage.list_valid = DEMI_LIST_ALONE;
     return result;
 }
 /* Fails because the list does not fit the bodies or walls any more. Returns -1. */
@@ -27619,20 +27619,19 @@ static void demi_joints_tell(dem_world *w) {
 
 /* ---------------------------------------------------------------------------------------------
    >>towers
-   Direct solution of the contact constraints of towers, which are polyhedra and clusters that rest
-   on three or more points of each other. A sweep of >>solvers carries a change of velocity a few
-   bodies further, and a tower bends so easily that sweeps alone need a number that grows with the
-   square of its height.
-   A seat is a contact that three or more points hold, which push, stick and are not on one line.
-   Its two bodies move together, so along a tree of seats the impulses follow from momenta alone
-   (recursive Newton-Euler algorithm [FEA08]): from walls and fixed bodies upwards, each body gets
-   the velocity at which the points of its seat are at rest (least squares); from the leaves
-   downwards, each seat gets the momentum that the bodies beyond it need, and divides it among its
-   points like a rigid face. Where a point would pull or slide, the whole tree takes the part of
-   this step that does not yet make it.
-   A step takes a tree to the minimum of the energy that sweeps reduce, too, over the impulses of
-   its seats, or a part of the way. So it never increases that energy. Trees end at bodies that no
-   seat connects to a wall or a fixed body, and in planar worlds there are none.
+   Direct solution of the contact constraints of towers, which are stacks of polyhedra and
+   clusters. A sweep of >>solvers carries a change of velocity a few bodies further, and a tower
+   bends so easily that the number of sweeps it needs grows with the square of its height.
+   A seat joins two bodies, or a body and a wall, that touch at three or more points; these push,
+   stick and are not on one line. Its two bodies move together, so along a tree of seats the
+   impulses follow from momenta alone (recursive Newton-Euler algorithm [FEA08]). From walls and
+   fixed bodies upwards, each body gets the velocity at which the points of its seat are at rest
+   (least squares). From the leaves downwards, each seat gets the momentum that the bodies beyond
+   it need, and divides it among its points like a rigid face. If that would make a point pull or
+   slide, the whole tree takes only the largest part of the change at which no point does.
+   Sweeps reduce an energy. The whole change takes the impulses of the seats to its minimum, a part
+   goes part of the way: neither increases it. Bodies that no seats connect to a wall or a fixed
+   body are in no tree; planar worlds have none.
    Owns seats and trees of w->solver; changes impulses and solver bodies.
    Tests: tests/impulse/test_towers.c, tests/hard/hard_rest.c.
    --------------------------------------------------------------------------------------------- */
@@ -35054,9 +35053,9 @@ static dem_result demi_refresh_answer(dem_world *h) {
     h->stage.pairs_changed = 0;
     if (result == DEM_OK) result = demi_all(h, demi_member_look);
     if (result == DEM_OK) result = demi_all_forces(h, !stale);
+    if (result == DEM_OK) h->stage.list_valid = 1;      /* contacts can be read, if unstable too */
     if (result == DEM_OK) result = demi_all_agree(h, demi_member_looked);
     h->stage.forces_valid = result == DEM_OK;
-    if (result == DEM_OK) h->stage.list_valid = 1;
     return result;
 }
 /* Computes the forces at the present time, because the scene has changed since the last step;

@@ -265,12 +265,15 @@ static int examine_apart(int k) {
     close(told[0]);
     waitpid(child, &status, 0);
     if (line > EXAM_LINES) return WEXITSTATUS(status);
-    printf("FOUND   %-38s  ", line < 0 ? "before the first line" : line < EXAM_LINES ? exam_rows()[line].asks : "the curves of the page");
+    printf("FOUND   %-38s  ", line < 0 ? "before the first line" : line < EXAM_LINES ? exam_rows()[line].asks
+           : "the curves of the page");
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
         printf("the law does not end: more than %d s: look for a loop whose condition stays true\n", SECONDS);
     else if (WIFSIGNALED(status))
-        printf("the law crashes (signal %d): look for an index beyond its memory, or a null pointer\n", WTERMSIG(status));
-    else printf("the law ends the program (exit code %d): a law returns, and calls neither exit nor abort\n", WEXITSTATUS(status));
+        printf("the law crashes (signal %d): look for an index beyond its memory, or a null pointer\n",
+               WTERMSIG(status));
+    else printf("the law ends the program (exit code %d): a law returns, and calls neither exit nor abort\n",
+                WEXITSTATUS(status));
     printf("%s: the exam ended at this line\n%s = 0 lines passed\n", examinees[k].name, examinees[k].name);
     return 1;
 }

@@ -488,7 +488,8 @@ static inline void exam_stretch(exam_path *p) {
 }
 /* Returns the largest difference of tangential forces and moments, over the largest of them. */
 static inline double exam_sideways(const exam_path *p, dem_vec3 tangent, dem_vec3 moment) {
-    const double r = p->e->radius, size = fmax(sqrt(exam_dot(p->f.tangent, p->f.tangent)), sqrt(exam_dot(p->f.moment, p->f.moment))/r);
+    const double r = p->e->radius, t = sqrt(exam_dot(p->f.tangent, p->f.tangent));
+    const double size = fmax(t, sqrt(exam_dot(p->f.moment, p->f.moment))/r);
     return fmax(exam_apart(p->f.tangent, tangent), exam_apart(p->f.moment, moment)/r)/(size + 1e-6*p->largest + 1e-300);
 }
 /* Two grains that touch rotate together by 1.5 rad about an oblique axis: their springs rotate with them. */

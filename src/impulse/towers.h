@@ -1,19 +1,18 @@
 /* ---------------------------------------------------------------------------------------------
    >>towers
-   Direct solution of the contact constraints of towers, which are polyhedra and clusters that rest
-   on three or more points of each other. A sweep of >>solvers carries a change of velocity a few
-   bodies further, and a tower bends so easily that sweeps alone need a number that grows with the
-   square of its height.
-   A seat is a contact that three or more points hold, which push, stick and are not on one line.
-   Its two bodies move together, so along a tree of seats the impulses follow from momenta alone
-   (recursive Newton-Euler algorithm [FEA08]): from walls and fixed bodies upwards, each body gets
-   the velocity at which the points of its seat are at rest (least squares); from the leaves
-   downwards, each seat gets the momentum that the bodies beyond it need, and divides it among its
-   points like a rigid face. Where a point would pull or slide, the whole tree takes the part of
-   this step that does not yet make it.
-   A step takes a tree to the minimum of the energy that sweeps reduce, too, over the impulses of
-   its seats, or a part of the way. So it never increases that energy. Trees end at bodies that no
-   seat connects to a wall or a fixed body, and in planar worlds there are none.
+   Direct solution of the contact constraints of towers, which are stacks of polyhedra and
+   clusters. A sweep of >>solvers carries a change of velocity a few bodies further, and a tower
+   bends so easily that the number of sweeps it needs grows with the square of its height.
+   A seat joins two bodies, or a body and a wall, that touch at three or more points; these push,
+   stick and are not on one line. Its two bodies move together, so along a tree of seats the
+   impulses follow from momenta alone (recursive Newton-Euler algorithm [FEA08]). From walls and
+   fixed bodies upwards, each body gets the velocity at which the points of its seat are at rest
+   (least squares). From the leaves downwards, each seat gets the momentum that the bodies beyond
+   it need, and divides it among its points like a rigid face. If that would make a point pull or
+   slide, the whole tree takes only the largest part of the change at which no point does.
+   Sweeps reduce an energy. The whole change takes the impulses of the seats to its minimum, a part
+   goes part of the way: neither increases it. Bodies that no seats connect to a wall or a fixed
+   body are in no tree; planar worlds have none.
    Owns seats and trees of w->solver; changes impulses and solver bodies.
    Tests: tests/impulse/test_towers.c, tests/hard/hard_rest.c.
    --------------------------------------------------------------------------------------------- */

@@ -788,9 +788,9 @@ static dem_result demi_refresh_answer(dem_world *h) {
     h->stage.pairs_changed = 0;
     if (result == DEM_OK) result = demi_all(h, demi_member_look);
     if (result == DEM_OK) result = demi_all_forces(h, !stale);
+    if (result == DEM_OK) h->stage.list_valid = 1;      /* contacts can be read, if unstable too */
     if (result == DEM_OK) result = demi_all_agree(h, demi_member_looked);
     h->stage.forces_valid = result == DEM_OK;
-    if (result == DEM_OK) h->stage.list_valid = 1;
     return result;
 }
 /* Computes the forces at the present time, because the scene has changed since the last step;

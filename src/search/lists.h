@@ -178,8 +178,7 @@ static void demi_walled_add(dem_world *w, int first, int end) {
                                                                      : -DEMI_ONLY_SHEET);
     }
 }
-/* Notes the wall candidates of each body, while some surface is a sheet. Returns 0 if memory ran
-   out. */
+/* Notes the wall candidates of each body, while some surface is a sheet. 0: memory ran out. */
 static int demi_walled_note(dem_world *w) {
     const demi_walled none = {0, 0, DEMI_ONLY_SHEET};
     const int n = w->bodies.count + w->join_room;

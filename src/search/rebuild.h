@@ -197,8 +197,7 @@ static dem_result demi_lost(dem_world *w, int body) {
                      DEMI_FARTHEST);
 }
 /* Fails and returns 1 if a search would take minutes. All bodies of a cell are tested with each
-   other, and many share a cell if they lie on each other, or if a few bodies far away stretch the
-   grid. */
+   other, and many share a cell if they lie on each other, or if few far away stretch the grid. */
 static int demi_crowd_refuse(dem_world *w) {
     const int32_t *start = w->cell_start;
     const int n = w->cells[0]*w->cells[1]*w->cells[2];
@@ -535,10 +534,13 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     return result;
 }
 
-/* Rebuilds the lists outside of a step: the forces may be those of another scene. */
+/* Rebuilds the lists outside of a step. Contacts of spheres by springs follow from the list; others
+   are those of the last forces, which may belong to another scene. */
 static dem_result demi_list_make(dem_world *w, const char *call) {
     const dem_result result = demi_rebuild(w, call);
-    if (result == DEM_OK && !w->stage.forces_valid) w->stage.list_valid = DEMI_LIST_ALONE;
+    if (result == DEM_OK && !w->stage.forces_valid &&
+        (w->wall_count || w->bodies.shaped || demi_response_is(w, DEMI_MIDWAY)))
+        w->stage.list_valid = DEMI_LIST_ALONE;
     return result;
 }
 /* Fails because the list does not fit the bodies or walls any more. Returns -1. */

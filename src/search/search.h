@@ -190,8 +190,7 @@ static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem
 }
 
 /* Tests one pair (a < b) and appends it to the list of a's work group d if its gap is below `skin`.
-   Pairs of two fixed bodies, of two ghosts and of materials that ignore each other are left
-   out. */
+   Leaves out pairs of two fixed bodies, of two ghosts, of materials that ignore each other. */
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;

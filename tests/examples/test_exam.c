@@ -97,6 +97,23 @@ static void dawdles(const dem_contact *c, dem_real *memory, dem_contact_force *f
     if (sum > 0) linear_spring(c, memory, f);
 }
 
+/* A spring with friction of its own. */
+static void own_spring(const dem_contact *c, dem_real *memory, dem_contact_force *f, int rotates, int by_slip, int limited) {
+    const dem_vec3 slip = by_slip ? c->slip : c->slip_step, old = demi_at(memory);
+    dem_vec3 s = demi_add(rotates ? dem_memory_rotate(c, old) : old, demi_scale(slip, c->dt));
+    const dem_real kt = DEM_R(0.5)*c->kn, size = kt*demi_length(s);
+    dem_real most;
+    dem_law_linear(c, memory, f);
+    most = DEM_R(0.4)*(f->normal > 0 ? f->normal : 0);
+    if (limited && size > most) s = demi_scale(s, most/size);
+    f->tangent = demi_scale(s, -kt);
+    if (c->dt > 0) { memory[0] = s.x; memory[1] = s.y; memory[2] = s.z; }
+}
+static void springs(const dem_contact *c, dem_real *memory, dem_contact_force *f) { own_spring(c, memory, f, 1, 0, 1); }
+static void stays(const dem_contact *c, dem_real *memory, dem_contact_force *f) { own_spring(c, memory, f, 0, 0, 1); }
+static void slips(const dem_contact *c, dem_real *memory, dem_contact_force *f) { own_spring(c, memory, f, 1, 1, 1); }
+static void never_slides(const dem_contact *c, dem_real *memory, dem_contact_force *f) { own_spring(c, memory, f, 1, 0, 0); }
+
 static void bond_pushes(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     bond_law(c, memory, f);
     f->tangent = demi_add(f->tangent, demi_scale(c->slip, DEM_R(300.0)*c->ct));
@@ -166,6 +183,7 @@ int main(int argc, char **argv) {
     TEST("the built-in laws and one with a dent pass every line of the exam") {
         right("rescaled Mindlin, EPSD", hertz_rescaled_epsd, 7, 2, 0, DEM_NORMAL_HERTZ);
         right("linear, spring", linear_spring, 3, 1, 0, DEM_NORMAL_LINEAR);
+        right("own spring", springs, 3, 1, 0, DEM_NORMAL_LINEAR);
         right("Hertz, viscous", hertz_viscous, 0, 0, 0, DEM_NORMAL_HERTZ);
         right("dent", dented, 1, 0, 4000, DEM_NORMAL_LINEAR);
         right("dent, ten times as hard", dented_hard, 1, 0, 40000, DEM_NORMAL_LINEAR);     /* no shear: round-off is no gain */
@@ -183,6 +201,9 @@ int main(int argc, char **argv) {
         wrong(takes_sides, EXAM_SWAP, "a and b exchanged, forces differ by", 0, 1);
         wrong(linear_spring, EXAM_SWAP, "law_vectors how many they are (0 now)", 0, 0);
         wrong(knows_axes, EXAM_FRAME, "seen from a frame that is turned", 0, 1);
+        wrong(stays, EXAM_TURN, "rotate vectors in the memory with dem_memory_rotate", 0, 1);
+        wrong(slips, EXAM_WAY, "memory must grow by slip_step", 0, 1);
+        wrong(never_slides, EXAM_BOUND, "times the normal force: limit it", 0, 1);
         wrong(jumps, EXAM_ENDS, "the force jumps by", 0, 1);
         wrong(pushes_out, EXAM_PRESS, "the way out must not lie above that on the way in", 0, 1);
         wrong(drives, EXAM_SHEAR, "friction must act against slip", 0, 1);
