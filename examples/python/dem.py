@@ -6706,12 +6706,13 @@ class World(WorldBase):
     def settle(self, seconds, speed=0, progress=None):
         """Advances the world until its bodies are at rest, for at most `seconds` of simulated time (> 0). At rest: at
         three checks in a row the root mean square speed, weighted by mass, is below `speed`, and no body is faster
-        than 10 times that. Spins do not count, because nothing brakes a sphere that spins on a point. Checks are at
-        most sqrt(R/g) apart, the time of a fall by half the mean radius R (without gravity: the time in which `speed`
-        covers R/2). All feeds, also those that begin later, must have inserted all their grains first. speed: m/s, >=
-        0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: a function, or None. Errors as for World.step; also
-        ArgumentError for a feed with neither `limited` nor `end`, and StoppedError if the time is up: the message
-        gives the speeds, or the feed that is not done, and the state is intact.
+        than 10 times that. Spins do not count, because nothing brakes a sphere that spins on a point. Checks are
+        sqrt(R/g) apart, the time of a fall by half the mean radius R (without gravity: the time in which `speed`
+        covers R/2, at most seconds/4). All feeds, also those that begin later, must have inserted all their grains
+        first. speed: m/s, >= 0; 0: 0.01 sqrt(2 g R), which needs gravity. progress: a function, or None. Errors as
+        for World.step; also ArgumentError for a feed with neither `limited` nor `end`, and StoppedError if the time
+        is up: the message gives the speeds, the feed that is not done, or the time that three checks take; the state
+        is intact.
 
         progress: progress(world, done, seconds_left), see dem.ProgressFn
         """
