@@ -293,8 +293,8 @@ static rest watch(place *p, double settling, const char *name) {
 }
 
 /* most: the largest step; big: 1 if that step is enough for the short form; settling: how long the scene is given to
-   come to rest; moves: sizes, more has fallen. With the step 0.1 the stones of an arch fall 0.01 sizes in the first
-   step, since nothing presses them yet, and then settle for up to 60 units. */
+   come to rest; moves: sizes, more has fallen. The stones of an arch are put 0.009 sizes from where they touch, and
+   with the step 0.1 they settle for up to 60 units. */
 typedef struct scene {
     const char *name;
     void (*build)(const place *p);
