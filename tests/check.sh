@@ -30,6 +30,7 @@ try "dem.h is joined from src/" "awk -f src/join.awk src/dem.h | cmp - dem.h"
 try "dem.h split into src/ and joined is dem.h" "mkdir -p \$bin && cp -r src \$bin && awk -v to=\$bin/src -f src/split.awk src/dem.h dem.h && diff -r src \$bin/src"
 try "docs/options.md and docs/options_run.md are those of dem.h" "cc -I. -DDEM_STATIC -DDEM_NO_OPENMP tests/options.c -o \$bin -lm && \$bin > \$bin.txt && for part in '' _run; do awk -v part=\${part#_} -f tests/options.awk - dem.h < \$bin.txt | cmp - docs/options\$part.md || exit 1; done"
 try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.awk examples/replay/viewer.html dem.h | cmp - dem.h"
+[ "$1" = short ] || try "the exam of laws gives each law of a class its verdict" "make -s verdicts"
 if [ "$1" = short ]; then                     # the long form runs them all
     make -s build/rooms/private.h
     for cc in "g++ -std=c++11 -x c++" "clang -std=c99"; do
