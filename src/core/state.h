@@ -29,10 +29,10 @@ typedef struct demi_timing {       /* >>step, >>advice */
     uint64_t press_since;          /* step of the last change of the scene */
     demi_held held;
 } demi_timing;
+enum { DEMI_LIST_ALONE = 2 };
 /* Which of the data that a step needs are valid. A change of the scene clears dt_valid,
    forces_valid and primed; adding or removing bodies also clears list_valid. dem_world_step
    restores what is missing, in the order 1 to 4: */
-enum { DEMI_LIST_ALONE = 2 };
 typedef struct demi_stages {
     int dt_valid;                  /* 1: the time step suits the scene */
     int list_valid;                /* 2: the candidate lists fit the bodies; DEMI_LIST_ALONE:
