@@ -129,7 +129,7 @@ law: $(if $(LAW),build/dem.o,build/exam) ## examine a contact law and draw its c
 	    else build/exam; fi
 
 verdicts: build/dem.o ### laws as students write them, and the verdict of the exam on each
-	@CC="$(CC)" sh tests/verdicts.sh build/dem.o
+	@CC="$(CC)" LINK="$(LINK)" sh tests/verdicts.sh build/dem.o
 
 lessons: $(LESSONS) ## build and run the twelve lessons, record replays in build/out/NAME, check their marks
 	@JOBS=$(JOBS) sh tests/lessons.sh $(LESSONS)
@@ -240,8 +240,8 @@ python-check: $(if $(HAVE_PYTHON),$(LESSONS)) ### test examples/python: dem.py i
 	@if [ -z "$(HAVE_PYTHON)" ]; then echo "SKIP: $(PYTHON) not found (Debian package python3): examples/python is not tested"; \
 	    else CC="$(CC)" JOBS=$(JOBS) LONG=$(LONG) DEM_CFLAGS="$(if $(filter file,$(origin CFLAGS)),-O1,$(CFLAGS))" $(PYTHON) tests/python/check.py "$(FILTER)"; fi
 
-web: ### build the browser lesson build/web/lesson.html (dem.h in WebAssembly) and the same scenes as a program
-	@sh examples/web/make.sh build/web || test $$? -eq 77
+web: ### build the browser lesson and the law lab (dem.h in WebAssembly) into examples/web/pages, and both as programs
+	@sh examples/web/make.sh build/web && mkdir -p examples/web/pages && cp build/web/lesson.html build/web/lab.html examples/web/pages
 
 viewer: ### copy examples/replay/viewer.html into src/replay/viewer.h
 	@mkdir -p build && awk -f tests/viewer.awk examples/replay/viewer.html src/replay/viewer.h > build/viewer.h && cp build/viewer.h src/replay/viewer.h

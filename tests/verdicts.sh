@@ -9,7 +9,7 @@ verdict() {
     { echo '#include <stdlib.h>'
       echo "static void law(const dem_contact *c, dem_real *memory, dem_contact_force *f) { (void)c; (void)memory; $2 }"
       [ -z "$3" ] || echo "#define LAW {\"$name\", law, $3}"; } > $dir/$name.h
-    if ! ${CC:-cc} ${CFLAGS:--O1} -w -I. -DLAW_FILE="\"$PWD/$dir/$name.h\"" examples/exam.c "$object" -o $dir/$name -lm 2> $dir/$name.log; then
+    if ! ${CC:-cc} ${CFLAGS:--O1} -w -I. -DLAW_FILE="\"$PWD/$dir/$name.h\"" examples/exam.c "$object" -o $dir/$name ${LINK:--lm} 2> $dir/$name.log; then
         found=compile; case $4 in "compile: "*) grep -q "${4#compile: }" $dir/$name.log && found=$4;; esac; code=1
     else
         $dir/$name --out $dir > $dir/$name.txt 2> $dir/$name.log; code=$?
