@@ -244,8 +244,18 @@ if os.environ.get("DEM_REAL", "") not in ("", "float", "double"):
     raise LoadError("dem.py: the environment variable DEM_REAL is %r, must be float or double" % os.environ["DEM_REAL"])
 Real = ctypes.c_float if os.environ.get("DEM_REAL") == "float" else ctypes.c_double
 _NAN = float("nan")
+# dem_trials_run calls dem_world_run(copy, seconds, 0, 0). The macro replaces the first 0 of such a call by a progress
+# function, so that Ctrl-C stops it. The definition of dem_world_run stays as it is.
 _SOURCE = """
 #include <stddef.h>
+#include "dem.h"
+dem_progress_fn dempy_progress;
+static int dempy_of_trial(const dem_world *world, double done, double seconds_left, void *user) {
+    return dempy_progress && done < 1 ? dempy_progress(world, done, seconds_left, user) : 0;
+}
+#define DEMPY_0 dempy_of_trial
+#define DEMPY_dem_progress_fn dem_progress_fn
+#define dem_world_run(world, seconds, progress, user) dem_world_run(world, seconds, DEMPY_##progress, user)
 #define DEM_IMPLEMENTATION
 #include "dem.h"
 """
@@ -288,7 +298,9 @@ int dempy_ids(const dem_world *w, int count, dem_body *out) {
     return 0;
 }
 int dempy_put(dem_world *w, int count, const dem_body *ids, const dem_real *x, const dem_real *v, const dem_real *s) {
+    const dem_real *all = x ? x : v ? v : s;
     int i;
+    for (i = 0; i < 3*count; i++) if (!(all[i] >= -1e15 && all[i] <= 1e15)) return -1 - i/3;
     for (i = 0; i < count; i++) {
         dem_body_state state;
         int result = dem_body_get(w, ids[i], &state);
@@ -422,6 +434,8 @@ def load(path=None):
             if size != ctypes.sizeof(kind):
                 raise LoadError("dem.py: %s has %d bytes in dem.h and %d in dem.py; make dem.py again: python3 make.py"
                                   % (kind.c_name, size, ctypes.sizeof(kind)))
+    if hasattr(library, "dempy_progress"):
+        ctypes.c_void_p.in_dll(library, "dempy_progress").value = ctypes.cast(_trials_stopped, ctypes.c_void_p).value
     world = library.dem_world_create_checked(WorldDesc(), VERSION, ctypes.sizeof(Real))
     if not world:
         raise LoadError("dem.py: %s is of another version than %d.%d.%d, or not in %s precision; build it from the "
@@ -434,11 +448,12 @@ def load(path=None):
 # ---- values: Python objects to C and back -------------------------------------------------------
 
 class View:
-    """The kind of a pointer to `kind`, with the names of the fields that hold the lengths of its axes. one: it points to
-    one struct, not to an array."""
+    """The kind of a pointer to `kind`, with the names of the fields that hold the lengths of its axes; "_per_body": the
+    numbers on bodies. one: it points to one struct, not to an array. times: there are so many pointers."""
 
-    def __init__(self, kind, *shape, const=False, one=False):
-        self.kind, self.shape, self.const, self.one, self.c = kind, shape, const, one, ctypes.POINTER(kind)
+    def __init__(self, kind, *shape, const=False, one=False, times=0):
+        self.kind, self.shape, self.const, self.one, self.times = kind, shape, const, one, times
+        self.c = ctypes.POINTER(kind)*times if times else ctypes.POINTER(kind)
         self.width = shape[1] if len(shape) > 1 and isinstance(shape[1], int) else 1
 
 
@@ -447,6 +462,13 @@ class Text:
 
     def __init__(self, size):
         self.c = ctypes.c_char*size
+
+
+class _Known:
+    """The kind of a number of contacts, which is -1 while the contacts are not known."""
+
+    def __init__(self, kind):
+        self.c = kind
 
 
 class Choices:
@@ -481,7 +503,7 @@ def _given(value):
     if isinstance(shape, tuple):
         return "a %s of shape %s is given" % (kind, shape)
     try:
-        text = repr(value)
+        text = repr(value.name.lower() if isinstance(value, enum.IntEnum) else value)
     except Exception:
         text = "<%s>" % kind
     return "%s (%s) is given" % (text if len(text) <= 60 else text[:57] + "...", kind)
@@ -815,18 +837,29 @@ def _short(value):
     return text[:text.rindex(" (")] if text.endswith(" is given") and " (" in text else text.replace(" is given", "")
 
 
-def _binds(function, where, own):
-    """A function whose arguments that do not fit raise ArgumentTypeError. own: the first one is self."""
+def _on_class(where, values):
+    """The exception for a method that is called on its class, without an object."""
+    name, _, call = where.partition(".")
+    return ArgumentTypeError("%s: %s in the place of the %s that this call needs; write %s.%s(...), not dem.%s(...)" % (
+        where, _given(values[0]) if values else "nothing is given", name,
+        {"Rows": "world.bodies"}.get(name, name.lower()), call, where))
+
+
+def _binds(function, where, own, kind=None):
+    """A function whose arguments that do not fit raise ArgumentTypeError. own: the first is self; kind: its class."""
     @functools.wraps(function)
     def bind(*values, **fields):
         try:
             return function(*values, **fields)
-        except TypeError as error:
-            if error.__traceback__.tb_next is not None:     # of the function, not of its call
-                raise
-            found = _unbound(function, where if not own or "." not in where else "%s.%s" % (
-                values[0].__name__ if isinstance(values[0], type) else type(values[0]).__name__ if isinstance(values[0], (Handle, Struct, Rows)) else
-                where.partition(".")[0], function.__name__), values[own:], fields)
+        except Exception as error:
+            if kind and not (values and isinstance(values[0], kind)):
+                raise _on_class(where, values) from None
+            if not isinstance(error, TypeError) or error.__traceback__.tb_next is not None:
+                raise                                       # of the function, not of its call
+            name, dot, call = where.partition(".")
+            if own and dot and isinstance(values[0], (type, Handle, Struct, Rows)):
+                name = (values[0] if isinstance(values[0], type) else type(values[0])).__name__
+            found = _unbound(function, name + dot + call, values[own:], fields)
         raise found or ArgumentTypeError("%s: the arguments do not fit" % where)
     return bind
 
@@ -861,7 +894,9 @@ def _bind_all(names):
                 if isinstance(member, types.FunctionType) and (part[0] != "_" or part == "__init__" and not issubclass(
                         thing, (Struct, ReplayBase, SlabsBase))):
                     where = thing.__name__.replace("Base", "")
-                    setattr(thing, part, _binds(member, where if part == "__init__" else "%s.%s" % (where, part), 1))
+                    where = {"Handle": "World", "Numbers": "Vec3", "Vector": "Vec3"}.get(where, where)
+                    where += ".%s" % part if part != "__init__" else ""
+                    setattr(thing, part, _binds(member, where, 1, thing))
                 elif isinstance(member, classmethod) and part[0] != "_" and part != "from_param":
                     setattr(thing, part, classmethod(_binds(member.__func__, "%s.%s" % (thing.__name__, part), 1)))
 
@@ -897,6 +932,7 @@ def _items(value, wanted):
 
 def _convert(value, kind, exact=True):
     """value as the kind of a field that is not an array behind a pointer: sequences become structs and arrays."""
+    kind = kind.c if isinstance(kind, _Known) else kind
     if kind in _NUMBERS:
         return _number(value, kind)
     if isinstance(kind, Text) or kind is str:
@@ -1038,8 +1074,8 @@ def _rows(value, numbers, kind, width, wanted, depth):
         _rows(item, numbers, kind, width, wanted, depth + 1)
     found = len(numbers) - begun
     if depth and not nested and found != width:
-        raise ValueError("a row has the shape (%d,), an array of shape %s is wanted%s" % (
-            found, wanted, "; leave out number 4 of each row" if width == 3 and found == 4 else ""))
+        raise ValueError("row %d has the shape (%d,), an array of shape %s is wanted%s" % (
+            begun//width, found, wanted, "; leave out number 4 of each row" if width == 3 and found == 4 else ""))
 
 
 def _one_radius(radii, radius, where):
@@ -1058,7 +1094,7 @@ def _array_of(value, kind, where, width=1, count=None, null=False):
         raise _named(error, where) from None
 
 
-def _view(pointer, kind, shape, owner, const):
+def _view(pointer, kind, shape, owner, const, name):
     """The memory behind a pointer as a memoryview of this shape (of structs: as a C array); None for
     null, and of numbers also if there are none."""
     if not pointer:
@@ -1075,7 +1111,7 @@ def _view(pointer, kind, shape, owner, const):
     array = (kind*count).from_address(ctypes.addressof(pointer.contents))
     array.owner = owner                                     # the world lives as long as the view
     view = memoryview(array).cast("B").cast(array._type_._type_, list(shape))
-    return Array(view.toreadonly() if const else view)
+    return Array(view.toreadonly() if const else view, name)
 
 
 class Array:
@@ -1086,7 +1122,7 @@ class Array:
 
     def __init__(self, view, name="positions"):
         self.view = view if isinstance(view, memoryview) else memoryview(view)
-        self._name = name                                   # of an array of all bodies, for error messages
+        self._name = name                                   # of the field, for error messages
 
     def __getattr__(self, name):                            # shape, tolist, nbytes, ...
         if name[:2] == "__":
@@ -1242,7 +1278,7 @@ def _plain(value):
 def _array_bytes(field, kind, struct):
     """The bytes of an array behind a pointer; None of null."""
     pointer = getattr(struct, "_" + field)
-    if not pointer:
+    if kind.times or not pointer:
         return None
     if kind.one:
         return [pointer[0]]
@@ -1275,8 +1311,9 @@ class Struct(ctypes.Structure):
     """A struct of dem.h. Fields are keyword arguments; fields that are not given are 0."""
     rows, c_name, counts, kinds, counted, lengths, numbers = [], "", {}, {}, (), {}, False
     # _functions: Python functions, by their path; _of: the world; _extra: what must live as long; _ids: ids that it holds;
-    # _call: the call that changes what this copy shows
+    # _call: the call that changes what this copy shows; _per_body: how many numbers on bodies its pointers show
     _functions = _of = _extra = _ids = _call = None
+    _per_body = 0
 
     def __getattr__(self, name):
         raise _no_attribute(self, name)
@@ -1300,15 +1337,51 @@ class Struct(ctypes.Structure):
         """A struct of the arguments of a call, whose name error messages have."""
         made = cls()
         made._put(fields, where + ": ")
-        for name in cls.uses if "kind" in fields else ():
-            if made.kind.name.lower() not in cls.uses[name] and getattr(made, name) != getattr(cls(), name):
-                raise ArgumentError("%s: %s: %s, but a wall of kind %r does not use it; it belongs to kind=%s" % (
-                    where, name, _given(fields[name]), made.kind.name.lower(), " or ".join(map(repr, cls.uses[name]))))
+        try:
+            made._fit()
+        except ArgumentError as error:
+            raise _named(error, where) from None
         for name in cls.needs.get(made.kind.name.lower(), ()) if "kind" in fields else ():
-            if all(getattr(made, one) == getattr(cls(), one) for one in name.split()):
+            if all(made._is_zero(one) for one in name.split()):
                 warnings.warn("%s: a wall of kind %r without %s does not move or bears nothing" % (
                     where, made.kind.name.lower(), " or ".join("%s=..." % one for one in name.split())), stacklevel=4)
         return made
+
+    def _is_zero(self, name):
+        """True of a field that is 0, or has the value that 0 means."""
+        value = getattr(self, name)
+        return value == getattr(type(self)(), name) or name in self.defaults and value == self.defaults[name]
+
+    def _fit(self):
+        """Refuses a field that has no use beside the others, one below 0 that must not be, and the lack of a required
+        one. Returns self."""
+        for name, conditions in self.uses.items():
+            if not self._is_zero(name):
+                for other, words in conditions:
+                    self._use(name, other, words)
+        for name, remedy in self.positive.items():
+            if getattr(self, name) < 0:
+                raise ArgumentError("%s: %s, must be >= 0; %s" % (name, _given(getattr(self, name)), remedy))
+        for name in self.required:
+            if self._is_zero(name):
+                doc = next(doc for one, _, doc in self.rows if one == name).partition(". ")[0]
+                raise ArgumentError("%s was not given, or is 0; it has no default (%s); give %s=%s" % (
+                    name, doc, name, "(x0, y0, z0, x1, y1, z1)" if self.kinds[name] is Box else "..."))
+        return self
+
+    def _use(self, name, other, words):
+        """Refuses a field that has no use. words: of the field `other` that have a use for it; True: `other` must be
+        given; False: it must not."""
+        value, zero, text = getattr(self, other), self._is_zero(other), ""
+        if words is True and zero:
+            text = "without %s=... it has no use; give %s=..., or leave out %s" % (other, other, name)
+        elif words is False and not zero:
+            text = "beside %s=... it has no use; leave out one of them" % other
+        elif isinstance(words, tuple) and value.name.lower() not in words:
+            text = "with %s=%r it has no use; it belongs to %s=%s" % (
+                other, value.name.lower(), other, " or ".join(map(repr, words)))
+        if text:
+            raise ArgumentError("%s: %s, but %s" % (name, _given(getattr(self, name)), text))
 
     def _put(self, fields, where=None):
         where = where or type(self).__name__ + "."
@@ -1342,6 +1415,8 @@ class Struct(ctypes.Structure):
                     if isinstance(value, (list, tuple)):
                         value = [inner._made(item) if isinstance(item, dict) else item for item in value]
                 if isinstance(kind, View):
+                    if kind.times and value is not None:
+                        raise TypeError("%s, but only dem.h fills this field" % _given(value))
                     if isinstance(value, ctypes._Pointer):  # nobody knows its length
                         pointers = True
                         _set(self, "_" + name, value)
@@ -1351,15 +1426,17 @@ class Struct(ctypes.Structure):
                         array = _array(value, kind.kind, kind.width)
                         sizes[name] = len(array)//kind.width
                         _set(self, "_" + name, ctypes.cast(array, kind.c))
+                        if kind.shape == ("_per_body",):
+                            self.__dict__["_per_body"] = min(self._per_body or len(array), len(array))
                     else:
-                        _set(self, "_" + name, None)
+                        _set(self, "_" + name, kind.c())
                 elif name in self.counted:
                     array = _convert(value, kind, False)
                     size = 0 if value is None else len(value) if _many(value) else 1
                     if size:
                         sizes[name] = size
                     _set(self, name, array)
-                elif isinstance(kind, Function) or isinstance(kind, Choices) or kind is str or isinstance(kind, Text) or (
+                elif isinstance(kind, (Function, Choices, Text, _Known)) or kind is str or (
                         isinstance(kind, type) and issubclass(kind, enum.IntEnum)):
                     _set(self, name, value)                 # a property
                 else:
@@ -1408,7 +1485,10 @@ class Struct(ctypes.Structure):
             _set(self, length, 0)
 
     def _keep(self, name, value, path):
-        """Keeps what C does not copy with a struct: its Python functions, and the worlds of its ids."""
+        """Keeps what C does not copy with a struct: its Python functions, the worlds of its ids, how many numbers it
+        has."""
+        if value._per_body:
+            self.__dict__["_per_body"] = value._per_body
         if value._functions:
             functions = dict(self._functions or {})
             functions.update((path + inner, function) for inner, function in value._functions.items())
@@ -1453,13 +1533,13 @@ class Struct(ctypes.Structure):
     @classmethod
     def _made(cls, value):
         if isinstance(value, cls):
-            return value
+            return value._fit() if cls.uses or cls.positive or cls.required else value
         if value is None:
             return cls()
         if isinstance(value, dict):
             if not all(isinstance(name, str) for name in value):
                 raise TypeError("%s, a %s is wanted" % (_given(value), cls.__name__))
-            return cls(**value)
+            return cls(**value)._fit()
         first = cls.rows[0][1]
         nested = isinstance(first, type) and issubclass(first, Struct)
         if isinstance(value, Struct):
@@ -1476,14 +1556,14 @@ class Struct(ctypes.Structure):
                                                                        " (%s)" % ", ".join(cls.kinds)))
         if len(values) != len(cls.rows) and nested:
             return cls(values)
-        return cls(*values)
+        return cls(*values)._fit() if cls.positive else cls(*values)
 
     @classmethod
     def from_param(cls, value):
         return cls._made(value)
 
     def __iter__(self):
-        return (getattr(self, name) for name in self.kinds)
+        return (getattr(self, name, None) for name in self.kinds)
 
     def __len__(self):
         return len(self.rows)
@@ -1518,7 +1598,7 @@ class Struct(ctypes.Structure):
 
     def to_dict(self):
         """The fields as a dict of Python's own kinds: numbers, texts, tuples and lists. Bare pointers are left out."""
-        return {name: _plain(getattr(self, name)) for name, kind in self.kinds.items() if not _raw(kind)}
+        return {name: _plain(getattr(self, name, None)) for name, kind in self.kinds.items() if not _raw(kind)}
 
     def __eq__(self, other):
         if isinstance(other, Struct) and (other.plain or type(other)) is not (self.plain or type(self)) and not (self.numbers and other.numbers):
@@ -1555,8 +1635,7 @@ class Struct(ctypes.Structure):
 
     def __repr__(self):
         shown = []
-        for name in self.kinds:
-            value = getattr(self, name)
+        for name, value in zip(self.kinds, self):
             if isinstance(value, Array):
                 value = "<%s>" % " x ".join(map(str, value.shape))
             elif isinstance(value, ctypes.Array):
@@ -1567,7 +1646,10 @@ class Struct(ctypes.Structure):
 
 
 Struct.needs = {}               # of a kind: fields without which it does nothing
-Struct.uses = {}                # fields that only some of its kinds use: the names of those kinds
+Struct.uses = {}                # fields that have a use beside some others only: see _use
+Struct.defaults = {}            # fields whose 0 means this value
+Struct.positive = {}            # fields that must not be below 0, and what to write instead
+Struct.required = ()            # fields without which it means nothing
 Struct.whole = False            # a sequence must have all fields
 Struct.plain = None             # of the class of a struct that a function may only read: the class without that
 
@@ -1608,8 +1690,8 @@ def _changed(base, what, field=None):
 
 
 def _raw(kind):
-    """True of a pointer whose length nobody knows."""
-    return isinstance(kind, type) and issubclass(kind, ctypes._Pointer) or kind is ctypes.c_void_p
+    """True of a pointer that Python passes on and does not read."""
+    return kind is ctypes.c_void_p
 
 
 def _same(a, b):
@@ -1630,6 +1712,7 @@ class Row:
     """An array inside of a struct, and what functions return as one: a sequence of numbers, or of structs. Numbers take part
     in sums and products; two rows are equal if their numbers are."""
     _call = None
+    _name = ""                      # of numbers on bodies: their field, for error messages
 
     def __setitem__(self, index, value):
         _changed(self, "array[%s]" % (index,))
@@ -1646,7 +1729,10 @@ class Row:
 
     def _wrong(self, index, error):
         if isinstance(error, IndexError):
-            return NoSuchError("%s is given, the array has the numbers 0 to %d" % (index, len(self) - 1))
+            text = "%s is given, the array has %s" % (
+                index, "the numbers 0 to %d" % (len(self) - 1) if len(self) else "no numbers")
+            return NoSuchError("%s: %s; World(body_reals=...) names %d" % (
+                self._name, text, _reals_of(self.owner)) if self._name else text)
         return ArgumentTypeError("array[%s]: %s" % (index, error))
 
     def __iter__(self):
@@ -1835,6 +1921,10 @@ def _field(name, kind, doc):
             return value.decode(errors="replace")
         if kind is str:
             return None if value is None else value.decode(errors="replace")
+        if isinstance(kind, _Known):
+            if value < 0:
+                raise AttributeError                        # __getattr__ says why
+            return value
         try:
             return kind(value)
         except ValueError:
@@ -1844,13 +1934,18 @@ def _field(name, kind, doc):
         value = getattr(self, raw)
         if kind.one:
             return value[0] if value else None
+        if kind.shape == ("_per_body",):
+            return _reals_at(value, kind, self, name)
         shape = []
         for axis in kind.shape:
             length = getattr(self, axis) if type(axis) is str else axis
             if isinstance(length, Row):                     # cells along three axes
                 length = length[0]*length[1]*length[2]
             shape.append(length)
-        return _view(value, kind.kind, shape, self, kind.const) if shape else value
+        if kind.times:
+            count = getattr(self, name + "_count") if name + "_count" in self.kinds else kind.times
+            return tuple(_view(pointer, kind.kind, shape, self, kind.const, name) for pointer in value[:count])
+        return _view(value, kind.kind, shape, self, kind.const, name)
 
     def put(self, value):
         if isinstance(kind, Function):
@@ -1871,6 +1966,21 @@ def _field(name, kind, doc):
         else:
             _set(self, raw, _convert(value, kind))
     return property(view if isinstance(kind, View) else get, put, doc=doc)
+
+
+def _reals_of(struct):
+    """How many numbers on bodies the pointers of a struct show; 0 of a copy, whose pointers may be void."""
+    return struct._per_body or getattr(struct._b_base_, "_per_body", 0)
+
+
+def _reals_at(pointer, kind, owner, name):
+    """The numbers on a body behind a pointer, which refuse other indices by name."""
+    row = (_row_read if kind.const else _row)(kind.kind, _reals_of(owner) if pointer else 0)
+    row = row.from_address(ctypes.addressof(pointer.contents)) if row._length_ else row()
+    row.owner, row._name = owner, "%s.%s" % (type(owner).__name__, name)
+    if owner._of:
+        row._call = "call body.reals_set(...)"
+    return row
 
 
 def _compiled(function):
@@ -1896,7 +2006,8 @@ def _struct(cls):
         if isinstance(kind, type) and issubclass(kind, ctypes.Array):
             kind = _row(kind._type_, kind._length_)
         kinds[name] = kind
-        special = isinstance(kind, (View, Text, Function, Choices)) or kind is str or issubclass(kind, enum.IntEnum)
+        special = isinstance(kind, (View, Text, Function, Choices, _Known)) or kind is str or issubclass(
+            kind, enum.IntEnum)
         c = ctypes.c_char_p if kind is str else _c(kind)
         fields.append(("_" + name if special else name, c))
         if isinstance(kind, Function):
@@ -2049,6 +2160,10 @@ def _real_from(value, kind):
 def _no_attribute(thing, name):
     """The exception for an attribute that an id, a struct or a world does not have. It names what has one like it."""
     kind = type(thing)
+    if name in getattr(kind, "kinds", ()):
+        return NoFieldError("%s.%s: bodies or walls were added, removed or changed after the last step, so the "
+                            "contacts are not known; first call world.step() or world.contacts_each()" % (
+                                kind.__name__, name))
     if name[:1] == "_" or name in ("shape", "dtype", "tolist"):     # what numpy and others look for
         return AttributeError("%s has no attribute %r" % (kind.__name__, name))
     one, parts = kind.__name__.lower(), dict(_PARTS.get(kind.__name__, {}))
@@ -2101,6 +2216,16 @@ def _in_python(text):
     """An error message of dem.h, with the functions that it recommends as they are called in Python."""
     head, colon, rest = text.partition(": ")
     return head + colon + _said(rest)
+
+
+def _with_rows(text, rows):
+    """An error message of dem.h about a body that a call adds, with the array of the call and the index in it."""
+    def named(found):
+        """The array and the index; the field alone if the call has no such array."""
+        one, index = found.groups()
+        array = {"velocity": "velocities", "radius": "radii"}.get(one, one + "s")
+        return "%s[%s]" % (array, index) if array in rows.keys() and rows[array] is not None else one
+    return re.sub(r"(?:the )?\b(\w+) of (?:body|sphere) (\d+)(?= is )", named, text)
 
 
 def _said(text):
@@ -2187,8 +2312,10 @@ class Handle:
     def _text(self):
         return ""
 
-    def _raise(self, kind):
+    def _raise(self, kind, rows=None):
         text = _in_python(self._text() or "no message")
+        if rows is not None:
+            text = _with_rows(text, rows)
         if kind is Error:                                   # a null id
             kind = (MemoryError if ": out of memory" in text else FileError if ": cannot write" in text or ": cannot read" in text
                     else ArgumentError)
@@ -2200,8 +2327,8 @@ class Handle:
             text = "%s: another thread runs this world; one thread at a time may use a world" % text.partition(":")[0]
         raise kind(text)
 
-    def _ok(self, result):
-        """Raises the exception of a function of yours, or that of a result other than OK."""
+    def _ok(self, result, rows=None):
+        """Raises the exception of a function of yours, or that of a result other than OK. rows: arrays of the call."""
         if self._context and self._context.raised is not None:
             error, self._context.raised = self._context.raised, None
             if self._context.spoils and not self._context.spoilt and isinstance(self, WorldBase) and self._at == self._memory.at:
@@ -2210,7 +2337,7 @@ class Handle:
             self._text()                                    # a consequence: read, so that no run quotes it later
             raise error
         if result:
-            self._raise(_ERRORS[result])
+            self._raise(_ERRORS[result], rows)
 
     def _run(self, function, *arguments):
         """Calls a function that takes long. Ctrl-C meanwhile is noted: a progress function then ends the run, and the
@@ -2244,7 +2371,7 @@ class Handle:
     def _id(self, value):
         self._ok(0)
         if not value:
-            self._raise(Error)
+            self._raise(Error, {})
         value._of = self
         return value
 
@@ -2313,7 +2440,9 @@ class Handle:
     def _with(self, struct, call="dem.h computes it"):
         """Ties a struct that the library has filled to the world, whose memory its views keep alive. call: what changes
         the values that it shows."""
-        struct.__dict__.update(_of=self, _extra=self._memory, _call=call)
+        struct.__dict__.update(_of=self, _extra=self._memory, _call=call, _per_body=self._context.reals)
+        if type(struct) is WallLoads and struct._contacts and not _lib.dem_counters_get(self._at).wall_contacts:
+            struct._contacts = -1 if _lib.dem_bodies_get(self._at).count else 0     # those of bodies that may be gone
         return struct
 
     def _print(self, function, out, *arguments):
@@ -2631,6 +2760,12 @@ def _go_on(world, done, seconds_left):
     """The progress function of runs that are given none: lets Python handle Ctrl-C."""
 
 
+@ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
+def _trials_stopped(world, done, seconds_left, user):
+    """The progress function of the runs of World.trials_run: lets Python handle Ctrl-C, after which it stops them."""
+    return any(context.raised is not None or context.stop for context in list(_RUNNING) if context.runs == _thread())
+
+
 @functools.lru_cache(None)
 def _history(count, vectors):
     """The type of a contact history: `vectors` of its leading triples are vectors."""
@@ -2658,8 +2793,6 @@ def tail(memory, first):
 def _rows_of(name):
     """Of an array of all bodies: name of the pointer, type of its numbers, place in the struct, width (0: one axis)."""
     kind = Bodies.kinds[name]
-    if not isinstance(kind, View):                          # groups
-        return name, ctypes.c_uint32, getattr(Bodies, name).offset, 0
     return "_" + name, kind.kind, getattr(Bodies, "_" + name).offset, kind.shape[1] if len(kind.shape) > 1 else 0
 
 
@@ -2669,6 +2802,12 @@ _SETTERS = {"groups": "call world.bodies_group_set(selection, group, member)",
 _SETTERS.update(dict.fromkeys(("radius", "radii", "radiuses"), "call body.radius_set(radius) for each body"))
 _SETTERS.update((one, "write world.bodies.%s = array, or call body.set(%s=...) for one body" % (many, one)) for one, many in (
     ("position", "positions"), ("velocity", "velocities"), ("spin", "spins")))
+
+
+def _not_finite(row, numbers, more=""):
+    """The exception for a row of an array of all bodies."""
+    return ArgumentError("%s is (%s), must be finite%s; check what it was computed from; nothing was changed" % (
+        row, ", ".join("%g" % number for number in numbers), more))
 
 
 class Rows:
@@ -2782,7 +2921,9 @@ class Rows:
         """Rows in the order of world.bodies, as an array in the order of dem.h."""
         found, moved = self._struct(), type(array)()
         for i, row in enumerate(sorted(range(found.count), key=found.slots.__getitem__)):
-            moved[width*row:width*row + width] = array[width*i:width*i + width]
+            mine = moved[width*row:width*row + width] = array[width*i:width*i + width]
+            if not all(map(math.isfinite, mine)):
+                raise _not_finite("World.bodies.reals[%d]" % i, mine)
         return moved
 
     def __setattr__(self, name, value):
@@ -2794,8 +2935,12 @@ class Rows:
         ids = self._all()
         array = _array_of(value, Real, "World.bodies.%s" % name, 3, len(ids))
         if "dempy_put" in _lib.__dict__:
-            self._world._ok(_lib.dempy_put(self._world._c, len(ids), ctypes.addressof(ids), *[
-                ctypes.addressof(array) if name == field else None for field in ("positions", "velocities", "spins")]))
+            result = _lib.dempy_put(self._world._c, len(ids), ctypes.addressof(ids), *[
+                ctypes.addressof(array) if name == field else None for field in ("positions", "velocities", "spins")])
+            if result < 0:
+                i = -1 - result
+                raise _not_finite("World.bodies.%s[%d]" % (name, i), array[3*i:3*i + 3], " and at most 1e15")
+            self._world._ok(result)
         else:
             for i, body in enumerate(ids):
                 body.of(self._world).set(**{{"positions": "position", "velocities": "velocity", "spins": "spin"}[name]:
@@ -3763,15 +3908,15 @@ class ContactWho(Struct):
         ('mass_b', Real, None),
         ('point', Vec3, 'm, contact point in the world frame; at a wall: on the surface of a'),
         ('time', ctypes.c_double, 's, at the end of the step'),
-        ('reals_a', ctypes.POINTER(Real),
+        ('reals_a', View(Real, '_per_body', const=True),
          'present values of the user-defined numbers of a and of b or the wall, in the order of '
-         'World(body_reals=...); None if World(body_reals=...) names none'),
-        ('reals_b', ctypes.POINTER(Real), None),
-        ('rate_a', ctypes.POINTER(Real),
+         'World(body_reals=...); empty if World(body_reals=...) names none'),
+        ('reals_b', View(Real, '_per_body', const=True), None),
+        ('rate_a', View(Real, '_per_body'),
          'The law adds the rates of change of these numbers here, per s. They are 0 when the law is called; '
-         'the pointers are None if reals_a is. If a contact has several contact points (member spheres of '
-         'clusters, facets), dem.h multiplies the rates of each by its weight'),
-        ('rate_b', ctypes.POINTER(Real), None),
+         'they are empty if reals_a is. If a contact has several contact points (member spheres of clusters, '
+         'facets), dem.h multiplies the rates of each by its weight'),
+        ('rate_b', View(Real, '_per_body'), None),
     ]
 
 
@@ -3916,57 +4061,60 @@ class ContactRows(Struct):
     for these, and clears their history.
     """
     c_name = 'dem_contact_rows'
-    counts = {'count': (('touch', 1),), 'memory_count': (('memory', 1),)}
     rows = [
         ('count', ctypes.c_int, 'a multiple of DEM_ROW_GROUP'),
         ('memory_count', ctypes.c_int, 'World(law_memory=...)'),
-        ('touch', ctypes.POINTER(Real), '1 in contact or within the range of the law, otherwise 0'),
-        ('overlap', ctypes.POINTER(Real), ''),
-        ('range', ctypes.POINTER(Real), ''),
-        ('closing_speed', ctypes.POINTER(Real), ''),
-        ('twist', ctypes.POINTER(Real), ''),
-        ('sliding', ctypes.POINTER(Real), ''),
-        ('normal', ctypes.POINTER(Real)*3, ''),
-        ('slip', ctypes.POINTER(Real)*3, ''),
-        ('spin', ctypes.POINTER(Real)*3, ''),
-        ('slip_step', ctypes.POINTER(Real)*3, ''),
-        ('spin_step', ctypes.POINTER(Real)*3, ''),
-        ('normal_rate', ctypes.POINTER(Real)*3, ''),
-        ('r_eff', ctypes.POINTER(Real), ''),
-        ('m_eff', ctypes.POINTER(Real), ''),
-        ('kn', ctypes.POINTER(Real), ''),
-        ('cn', ctypes.POINTER(Real), ''),
-        ('kt', ctypes.POINTER(Real), ''),
-        ('ct', ctypes.POINTER(Real), ''),
-        ('kun', ctypes.POINTER(Real), ''),
-        ('friction', ctypes.POINTER(Real), ''),
-        ('friction_static', ctypes.POINTER(Real), ''),
-        ('rolling_friction', ctypes.POINTER(Real), ''),
-        ('spinning_friction', ctypes.POINTER(Real), ''),
-        ('material_a', ctypes.POINTER(ctypes.c_int32), ''),
-        ('material_b', ctypes.POINTER(ctypes.c_int32), ''),
-        ('kad', ctypes.POINTER(Real), ''),
+        ('touch', View(Real, 'count', const=True), '1 in contact or within the range of the law, otherwise 0'),
+        ('overlap', View(Real, 'count', const=True), ''),
+        ('range', View(Real, 'count', const=True), ''),
+        ('closing_speed', View(Real, 'count', const=True), ''),
+        ('twist', View(Real, 'count', const=True), ''),
+        ('sliding', View(Real, 'count', const=True), ''),
+        ('normal', View(Real, 'count', const=True, times=3), ''),
+        ('slip', View(Real, 'count', const=True, times=3), ''),
+        ('spin', View(Real, 'count', const=True, times=3), ''),
+        ('slip_step', View(Real, 'count', const=True, times=3), ''),
+        ('spin_step', View(Real, 'count', const=True, times=3), ''),
+        ('normal_rate', View(Real, 'count', const=True, times=3), ''),
+        ('r_eff', View(Real, 'count', const=True), ''),
+        ('m_eff', View(Real, 'count', const=True), ''),
+        ('kn', View(Real, 'count', const=True), ''),
+        ('cn', View(Real, 'count', const=True), ''),
+        ('kt', View(Real, 'count', const=True), ''),
+        ('ct', View(Real, 'count', const=True), ''),
+        ('kun', View(Real, 'count', const=True), ''),
+        ('friction', View(Real, 'count', const=True), ''),
+        ('friction_static', View(Real, 'count', const=True), ''),
+        ('rolling_friction', View(Real, 'count', const=True), ''),
+        ('spinning_friction', View(Real, 'count', const=True), ''),
+        ('material_a', View(ctypes.c_int32, 'count', const=True), ''),
+        ('material_b', View(ctypes.c_int32, 'count', const=True), ''),
+        ('kad', View(Real, 'count', const=True), ''),
         ('dt', Real, 's; this and the following are the same for all contacts'),
         ('tension', ctypes.c_int, ''),
         ('friction_load', ctypes.c_int, ''),
         ('slider', ctypes.c_int, ''),
         ('user', ctypes.c_void_p, ''),
-        ('memory', ctypes.POINTER(Real)*LAW_MEMORY, 'contact history: memory[k][q]'),
-        ('normal_force', ctypes.POINTER(Real), 'slides: force.sliding'),
-        ('tangent', ctypes.POINTER(Real)*3, None),
-        ('moment', ctypes.POINTER(Real)*3, None),
-        ('slides', ctypes.POINTER(Real), None),
-        ('energy', ctypes.POINTER(Real)*7, 'in the order of ContactEnergy; all None if the world keeps no ledger'),
+        ('memory', View(Real, 'count', times=LAW_MEMORY), 'contact history: memory[k][q]'),
+        ('normal_force', View(Real, 'count'), 'slides: force.sliding'),
+        ('tangent', View(Real, 'count', times=3), None),
+        ('moment', View(Real, 'count', times=3), None),
+        ('slides', View(Real, 'count'), None),
+        ('energy', View(Real, 'count', times=7),
+         'in the order of ContactEnergy; all None if the world keeps no ledger'),
     ]
 
 
 def _wrap_dem_law_fn(function, context, struct):
     memory_type = _history(context.memory, context.vectors)
     c_of = _read(Contact).from_address
+    shown = context.reals and {'_per_body': context.reals}
 
     def call(c, memory, force):
         try:
             _c = c_of(c)
+            if shown:
+                _c.__dict__.update(shown)
             _memory = memory_type.from_address(memory) if memory else memory_type()
             _force = ContactForce.from_address(force)
             result = function(_c, _memory, _force)
@@ -4011,10 +4159,13 @@ LawRowsFn.__doc__ = 'A law that computes the forces of a row of contacts: see Wo
 def _wrap_dem_law_rate_fn(function, context, struct):
     rates_type = Real*2
     c_of = _read(Contact).from_address
+    shown = context.reals and {'_per_body': context.reals}
 
     def call(c, rates):
         try:
             _c = c_of(c)
+            if shown:
+                _c.__dict__.update(shown)
             _rates = rates_type.from_address(rates) if rates else rates_type()
             result = function(_c, _rates)
             if result is not None:
@@ -4061,7 +4212,8 @@ class BodyState(Struct):
          'Spheres have one if World(orientations=1).'),
         ('shape', Shape, 'id 0 for a sphere'),
         ('moments', Vec3, 'kg m2, about the principal axes'),
-        ('reals', ctypes.POINTER(Real), 'World(body_reals=...), valid until the next step; None: none'),
+        ('reals', View(Real, '_per_body', const=True),
+         'World(body_reals=...), valid until the next step; empty: none'),
     ]
 
 
@@ -4069,12 +4221,15 @@ def _wrap_dem_reals_fn(function, context, struct):
     reals_type = Real*context.reals
     rates_type = _row_read(Real, context.reals)
     body_of = _read(BodyState).from_address
+    shown = context.reals and {'_per_body': context.reals}
 
     def call(reals, rates, body, id, time, dt, user):
         try:
             _reals = reals_type.from_address(reals) if reals else reals_type()
             _rates = rates_type.from_address(rates) if rates else rates_type()
             _body = body_of(body)
+            if shown:
+                _body.__dict__.update(shown)
             result = function(_reals, _rates, _body, id, time, dt)
             if result is not None:
                 raise _returned(result, 'reals')
@@ -4096,10 +4251,13 @@ RealsFn.__doc__ = "Advances the user-defined numbers of a body by one step, in p
 
 def _wrap_dem_growth_fn(function, context, struct):
     body_of = _read(BodyState).from_address
+    shown = context.reals and {'_per_body': context.reals}
 
     def call(body, id, time, user):
         try:
             _body = body_of(body)
+            if shown:
+                _body.__dict__.update(shown)
             result = _real_from(function(_body, id, time), 'growth')
             if _refs(_body) > _ONE and _held(_body):
                 raise _kept('body', 'growth')
@@ -4120,10 +4278,13 @@ ForceFn.__doc__ = 'A force field: returns the force (N) on a body with this posi
 
 def _wrap_dem_body_force_fn(function, context, struct):
     body_of = _read(BodyState).from_address
+    shown = context.reals and {'_per_body': context.reals}
 
     def call(body, id, time, force, torque, user):
         try:
             _body = body_of(body)
+            if shown:
+                _body.__dict__.update(shown)
             _force = Vec3.from_address(force)
             _torque = Vec3.from_address(torque)
             result = function(_body, id, time, _force, _torque)
@@ -4149,6 +4310,15 @@ BodyForceFn.__doc__ = 'A force field that sees the whole body and may exert a to
 class WorldDesc(Struct):
     """The description of a world. dem.world_create_error checks it."""
     c_name = 'dem_world_desc'
+    uses = {'thickness': (('planar', True),), 'normal_law': (('response', ('springs',)),), 'tangent_law':
+            (('response', ('springs',)), ('law', False)), 'rolling_law': (('response', ('springs',)), ('law',
+            False)), 'tension': (('response', ('springs',)),), 'friction_load': (('response', ('springs',)),),
+            'slider': (('response', ('springs',)),), 'convention': (('response', ('springs',)),), 'law_memory':
+            (('law', True),), 'law_stiffness': (('law', True),), 'growth_interval': (('growth', True),), 'cone':
+            (('response', ('impulses',)),), 'solver': (('response', ('impulses',)),), 'sweeps': (('response',
+            ('impulses',)),), 'tolerance': (('response', ('impulses',)),), 'cold_start': (('response',
+            ('impulses',)),), 'unsolved_stops': (('response', ('impulses',)),)}
+    defaults = {'thickness': 1}
     rows = [
         ('gravity', Vec3, 'm/s2'),
         ('domain', Box,
@@ -4266,6 +4436,7 @@ class WorldDesc(Struct):
 class MaterialDesc(Struct):
     """A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients at most 1e9."""
     c_name = 'dem_material_desc'
+    required = ('density',)
     rows = [
         ('density', Real, 'kg/m3, required, > 0'),
         ('young', Real, 'Pa, required, > 0; may be 0 with impulses, or if a linear or hysteretic law has a stiffness'),
@@ -4370,6 +4541,7 @@ InsideFn.__doc__ = 'Returns nonzero if a body with this bounding radius (m) may 
 class Region(Struct):
     """A region for new bodies."""
     c_name = 'dem_region'
+    required = ('box',)
     rows = [
         ('box', Box,
          'm, required. Bodies lie wholly inside. If the box spans the domain on a periodic axis, it has no '
@@ -4387,6 +4559,9 @@ class Region(Struct):
 class Sizes(Struct):
     """A size distribution, by radius."""
     c_name = 'dem_sizes'
+    uses = {'median': (('kind', ('lognormal', 'normal')),), 'spread': (('kind', ('lognormal',)),), 'scale':
+            (('kind', ('weibull', 'exponential')),), 'modulus': (('kind', ('weibull',)),), 'radius': (('kind',
+            ('sieve_curve',)),), 'passing': (('kind', ('sieve_curve',)),), 'deviation': (('kind', ('normal',)),)}
     counts = {'count': (('radius', 1), ('passing', 1))}
     rows = [
         ('kind', SizesKind, ''),
@@ -4434,7 +4609,8 @@ class Bodies(Struct):
         ('reals', View(Real, 'count', 'real_count', const=True), 'count x real_count; None if there are none'),
         ('rates', View(Real, 'count', 'real_count', const=True),
          'count x real_count, per s, of the last step; None likewise'),
-        ('groups', ctypes.POINTER(ctypes.c_uint32), 'bit id - 1: in that group; None without World(groups=...)'),
+        ('groups', View(ctypes.c_uint32, 'count', const=True),
+         'bit id - 1: in that group; None without World(groups=...)'),
     ]
 
 
@@ -4479,6 +4655,9 @@ class BodiesMeans(Struct):
 class ClusterDesc(Struct):
     """A rigid cluster of spheres, in a frame of your choice."""
     c_name = 'dem_cluster_desc'
+    uses = {'rays': (('mass', ('union',)),), 'volume': (('mass', ('given',)),), 'centre': (('mass', ('given',)),),
+            'inertia': (('mass', ('given',)),)}
+    required = ('positions',)
     counts = {'count': (('positions', 3), ('radii', 1))}
     rows = [
         ('count', ctypes.c_int, 'required, 1 to 1000: number of spheres'),
@@ -4560,6 +4739,7 @@ class BodyCounts(Struct):
 class MotionRow(Struct):
     """A pose or, for "servo", a load of a wall at a time."""
     c_name = 'dem_motion_row'
+    positive = {'load': 'velocity is the direction in which the wall presses; reverse it to press the other way'}
     rows = [
         ('time', ctypes.c_double, 's, after start; the first is 0, ascending'),
         ('position', Vec3, 'm, displacement from the pose in which the motion started'),
@@ -4592,20 +4772,16 @@ MotionFn.__doc__ = 'A motion: sets the pose of a wall at a time (s). When it is 
 class Motion(Struct):
     """The motion of a wall. It starts from the pose that the wall has when Wall.motion_set is called."""
     c_name = 'dem_motion'
-    uses = {'velocity': ('translating', 'oscillating', 'servo'),
-            'speed': ('rotating',),
-            'amplitude': ('oscillating',),
-            'frequency': ('oscillating',),
-            'phase': ('oscillating',),
-            'start': ('translating', 'rotating', 'oscillating', 'table', 'servo'),
-            'function': ('user',),
-            'ramp': ('translating', 'rotating', 'oscillating', 'servo'),
-            'load': ('servo',),
-            'area': ('servo',),
-            'travel': ('servo',),
-            'table': ('table', 'servo'),
-            'table_repeats': ('table',)}
-    needs = {'translating': ('velocity',), 'rotating': ('speed',), 'oscillating': ('amplitude', 'frequency'), 'servo': ('load table',)}
+    uses = {'velocity': (('kind', ('translating', 'oscillating', 'servo')),), 'speed': (('kind', ('rotating',)),),
+            'amplitude': (('kind', ('oscillating',)),), 'frequency': (('kind', ('oscillating',)),), 'phase':
+            (('kind', ('oscillating',)),), 'function': (('kind', ('user',)),), 'start': (('kind', ('translating',
+            'rotating', 'oscillating', 'table', 'servo')),), 'ramp': (('kind', ('translating', 'rotating',
+            'oscillating', 'servo')),), 'load': (('kind', ('servo',)), ('table', False)), 'area': (('kind',
+            ('servo',)),), 'travel': (('kind', ('servo',)),), 'table': (('kind', ('table', 'servo')),),
+            'table_repeats': (('kind', ('table',)),)}
+    needs = {'translating': ('velocity',), 'rotating': ('speed',), 'oscillating': ('amplitude', 'frequency'),
+            'servo': ('load table',)}
+    positive = {'load': 'velocity is the direction in which the wall presses; reverse it to press the other way'}
     counts = {'table_count': (('table', 1),)}
     rows = [
         ('kind', MotionKind, ''),
@@ -4677,6 +4853,7 @@ class SieveDesc(Struct):
     number of holes; that of a polyhedron on a plate grows with the holes below it.
     """
     c_name = 'dem_sieve_desc'
+    required = ('kind', 'aperture', 'bar')
     rows = [
         ('kind', SieveKind, 'required'),
         ('point', Vec3, 'm, centre of a hole, at half the thickness'),
@@ -4714,7 +4891,7 @@ class WallLoads(Struct):
         ('power', Real,
          'W, from the wall to the grains: -(force . v + torque . w), and the power of friction on a surface '
          'that moves in itself (Wall.surface_velocity_set)'),
-        ('contacts', ctypes.c_int, 'present number'),
+        ('contacts', _Known(ctypes.c_int), 'present number'),
         ('touched', ctypes.c_int, '1 if a grain has touched the wall since it was added'),
         ('impulse', ctypes.c_double*3, 'N s. All that follow except `rate` are sums since Wall.loads_reset.'),
         ('torque_impulse', ctypes.c_double, 'N m s, of torque_axial'),
@@ -4759,6 +4936,9 @@ class Joint(Id):
 class JointDesc(Struct):
     """A joint. Its point and axis refer to the present poses of the bodies."""
     c_name = 'dem_joint_desc'
+    uses = {'axis': (('kind', ('revolute',)),), 'motor': (('kind', ('revolute',)),), 'speed': (('motor',
+            ('speed',)),), 'torque': (('motor', ('speed', 'torque')),), 'wall': (('b', False),)}
+    required = ('kind', 'a')
     rows = [
         ('kind', JointKind, 'required: how the two are joined'),
         ('motor', Motor, ''),
@@ -4794,6 +4974,7 @@ class JointState(Struct):
 class RailDesc(Struct):
     """A rail. Components of velocity and spin along axes that are not locked are ignored."""
     c_name = 'dem_rail_desc'
+    uses = {'velocity': (('axes', True),), 'spin': (('axes', True),), 'wall': (('axes', True),)}
     rows = [
         ('axes', ctypes.c_int, '0 to 63: sum of dem.RAIL_ constants; 0 means no rail'),
         ('velocity', Vec3, 'm/s, along locked axes'),
@@ -4876,6 +5057,7 @@ class FeedDesc(Struct):
     world has bodies that are not spheres.
     """
     c_name = 'dem_feed_desc'
+    required = ('material', 'radius', 'box')
     counts = {'class_count': (('radius', 1), ('amount', 1), ('materials', 1), ('shapes', 1), ('sizes', 1))}
     rows = [
         ('material', Material, 'required'),
@@ -4927,6 +5109,7 @@ class OutletDesc(Struct):
     enters the box behind it.
     """
     c_name = 'dem_outlet_desc'
+    required = ('box',)
     counts = {'class_count': (('radius', 1),)}
     rows = [
         ('frame', Wall, 'the region moves with this wall; None means at rest'),
@@ -5013,6 +5196,7 @@ class Finding(Struct):
 class CellDesc(Struct):
     """How the sides of a periodic domain, the cell, move."""
     c_name = 'dem_cell_desc'
+    uses = {'stress': (('rate_most', True),)}
     rows = [
         ('rate', Vec3, '1/s, strain rate of each axis; positive: the cell becomes longer'),
         ('shear', Real, '1/s, shear rate: change of the velocity along x with y'),
@@ -5171,6 +5355,7 @@ ProgressFn.__doc__ = 'Receives the progress of a run, about ten times per second
 class TrialsDesc(Struct):
     """How World.trials_run works."""
     c_name = 'dem_trials_desc'
+    required = ('duration',)
     counts = {'observable_count': (('observables', 1),)}
     rows = [
         ('duration', ctypes.c_double,
@@ -5317,6 +5502,7 @@ EventFn.__doc__ = 'Receives one contact. It may only read the world.'
 class EventsDesc(Struct):
     """How contacts are recorded."""
     c_name = 'dem_events_desc'
+    uses = {'begins': (('function', True),)}
     rows = [
         ('function', EventFn,
          'called after each step for the contacts that have ended in it; None means no call. The contacts are '
@@ -5412,6 +5598,7 @@ class FieldDesc(Struct):
     it is spread about its centre by coarse graining (width).
     """
     c_name = 'dem_field_desc'
+    required = ('box', 'cells')
     rows = [
         ('box', Box,
          'm, required: what the cells divide. In planar worlds cells are World(thickness=...) deep, whatever '
@@ -5508,6 +5695,8 @@ class MixingDesc(Struct):
     `box` that can move count.
     """
     c_name = 'dem_mixing_desc'
+    uses = {'centre': (('axis', True),)}
+    required = ('box', 'cells')
     rows = [
         ('box', Box, 'm, required: what the cells divide'),
         ('cells', ctypes.c_int*3, 'required, >= 1: along each axis; 10 to 30 grains per cell suit'),
@@ -5717,6 +5906,10 @@ OutputDescFunction.__doc__ = 'kind "call": may change the world, but not step it
 class OutputDesc(Struct):
     """How an output works."""
     c_name = 'dem_output_desc'
+    uses = {'wall': (('kind', ('csv',)),), 'columns': (('kind', ('csv',)),), 'values': (('kind', ('csv',)),),
+            'mixing': (('kind', ('csv',)),), 'outlet': (('kind', ('csv',)),), 'function': (('kind', ('call',)),),
+            'field': (('kind', ('field_csv',)),), 'z0': (('kind', ('walls',)),), 'z1': (('kind', ('walls',)),)}
+    required = ('interval',)
     rows = [
         ('kind', OutputKind, ''),
         ('path', str,
@@ -5803,6 +5996,7 @@ class Transport(Struct):
 class SlabsDesc(Struct):
     """How a scene is divided."""
     c_name = 'dem_slabs_desc'
+    required = ('count',)
     rows = [
         ('axis', ctypes.c_int, '0, 1, 2: borders are planes x, y, z = const'),
         ('count', ctypes.c_int,
@@ -6132,7 +6326,8 @@ class World(WorldBase):
         count = len(positions)//3
         velocities = _array_of(velocities, Real, 'World.spheres: velocities', 3, count, True)
         radii = _array_of(radii, Real, 'World.spheres: radii', 1, count, True)
-        self._ok(_lib.dem_spheres_add(self._c, material, count, positions, velocities, radii, radius))
+        self._ok(_lib.dem_spheres_add(self._c, material, count, positions, velocities, radii, radius),
+            dict(positions=positions, velocities=velocities, radii=radii))
 
     def spheres_fill(self, material, radius, region, count, seed):
         """Adds up to count spheres of one radius (m) at random positions in a region, one after the other. The same seed
@@ -6422,7 +6617,8 @@ class World(WorldBase):
         spins = _array_of(spins, Real, 'World.bodies_add: spins', 3, count, True)
         scales = _array_of(scales, Real, 'World.bodies_add: scales', 1, count, True)
         self._ok(_lib.dem_bodies_add(self._c, material, shape, count, positions, orientations, velocities, spins,
-            scales))
+            scales), dict(positions=positions, orientations=orientations, velocities=velocities, spins=spins,
+            scales=scales))
 
     def bodies_fill(self, material, shape, region, count, seed):
         """Adds up to count bodies of a shape in random orientations, as World.spheres_fill does. Bounding spheres do not
@@ -6876,6 +7072,8 @@ class World(WorldBase):
         desc = TrialsDesc._of_call('World.trials_run', dict(duration=duration, budget=budget, tolerance=tolerance,
             seeds=seeds, observable_count=observable_count, observables=observables, progress=progress, user=user))
         desc = self._bound(desc)
+        if progress is None:
+            desc._progress = self._callback(ProgressFn, _go_on, None)
         self._ok(self._run(_lib.dem_trials_run, self._c, desc, trials))
         return trials
 
@@ -7216,7 +7414,7 @@ class World(WorldBase):
         If one grain has a bad value, none is added.
         """
         grains = self._bound(_struct_of(Grains, grains, 'World.grains: grains'))
-        self._ok(_lib.dem_grains_add(self._c, material, grains))
+        self._ok(_lib.dem_grains_add(self._c, material, grains), grains)
 
     def vtp_write(self, path):
         """Writes the bodies for ParaView (VTP): points with radius, velocity, spin, id, material and body_reals, with

@@ -282,7 +282,9 @@ def folded(line, width, indent):
 
 
 # comments of C in the words of Python: pattern, replacement; the first ones first
-SAY = [(r" ?\(>>\w+( has the formulas)?\)|, >>\w+(?=\))", ""), (r" Begin with DEM_\w+_DESC(: they do not)?\.", ""),
+SAY = [(r"null (if desc\.body_reals names none)", r"empty \1"), ("(the next step); null: none", r"\1; empty: none"),
+       ("the pointers are null if reals_a is", "they are empty if reals_a is"),
+       (r" ?\(>>\w+( has the formulas)?\)|, >>\w+(?=\))", ""), (r" Begin with DEM_\w+_DESC(: they do not)?\.", ""),
        (r"\b(CALL|CSV|FIELD_CSV|WALLS):", lambda found: 'kind "%s":' % found.group(1).lower()),
        (r"dem_world_error_get\(world\) returns", "world.error has"), (r"`box` and errors as above", "`box` and errors as for dem_repose_heap_get"),
        (r"\bDEM_SELECTION, all zero,", "Selection()"), (r"\bDEM_MOTION\b", "Motion()"),
@@ -407,14 +409,15 @@ class Writer:
             found = {f.name: m for f, m in zip([f for f in fields if f.pointer],
                                                re.finditer(r"\b(\w+_count) x (\w+)", self.h.structs[struct][1]))}.get(field.name)
         if not found:
-            return None
+            return [repr(LENGTHS[struct])] if struct in LENGTHS and field.type in NUMBERS else None
         return [repr(found.group(1))] + ([found.group(2) if found.group(2).isdigit() else repr(found.group(2))] if found.group(2) else [])
 
     def counts(self, name, fields):
         """Lengths that follow from arrays: {length: ((array, width), ...)}; all arrays of a length must have it."""
         found = {}
         for i, field in enumerate(fields):
-            if field.type != "int" or not re.search(r"(^|_)count$", field.name) or name in ("dem_bodies", "dem_trials"):
+            if field.type != "int" or not re.search(r"(^|_)count$", field.name) or name in (
+                    "dem_bodies", "dem_trials", "dem_contact_rows"):
                 continue
             word = field.name[:-6]
             arrays = [f for f in fields if (f.pointer and f.type not in ("char", "void")) or (f.dim and f.type not in ("char",))]
@@ -490,11 +493,18 @@ class Writer:
                 "_row_read(%s, %s)" % (NUMBERS[a.type], size) if a.const else "%s*%s" % (NUMBERS[a.type], "(%s)" % size if "(" in size else size)))
         for a in consts:
             self.write("    %s_of = _read(%s).from_address" % (a.name, camel(a.type)))
+        show = [a.name for a in consts if "_per_body" in [
+            LENGTHS.get(t) for t in [a.type] + [field.type for field in self.h.structs[a.type][0]]]]
+        if show:
+            self.write("    shown = context.reals and {'_per_body': context.reals}")
         result = "None" if f.type == "void" and not f.star else "ctypes.c_void_p" if f.star else self.plain(f.type)
         self.write("\n    def call(%s):" % names)
         self.write("        try:")
         for name_, made in kept:
             self.write("            _%s = %s" % (name_, made))
+            if name_ in show:
+                self.write("            if shown:")
+                self.write("                _%s.__dict__.update(shown)" % name_)
         call = "function(%s)" % ", ".join(given)
         about = re.sub("^dem_(replay_desc_|output_desc_)?|_fn$", "", f.name)
         if result == "None":
@@ -541,22 +551,28 @@ class Writer:
                 f.call.name = name + "_" + f.name
                 self.wrap(f.call)
                 kind = camel(f.call.name)
-            elif f.pointer and f.dim:
+            elif f.pointer and f.dim and f.type in self.h.structs:
                 kind = "ctypes.POINTER(%s)*%s" % (self.plain(f.type), self.number(f.dim))
             elif f.pointer and kind.startswith("ctypes.POINTER"):
                 shape = self.shape(name, f, fields)
-                if shape or f.type in self.h.structs or name.endswith("_desc"):
-                    one = f.type in self.h.structs and not shape and f.name not in [
-                        a for arrays in self.counts(name, fields).values() for a, _ in arrays]
-                    kind = "View(%s)" % ", ".join([self.plain(f.type)] + (shape or []) + (["const=True"] if f.const else [])
-                                                  + (["one=True"] if one else []))
+                counted = f.name in [a for arrays in self.counts(name, fields).values() for a, _ in arrays]
+                if not shape and not counted and f.type not in self.h.structs:
+                    fail("no rule for the length of %s of %s" % (f.name, name))
+                one = f.type in self.h.structs and not shape and not counted
+                more = ["const=True"]*f.const + ["one=True"]*one + ["times=" + self.number(f.dim or "0")]*bool(f.dim)
+                kind = "View(%s)" % ", ".join([self.plain(f.type)] + (shape or []) + more)
+            if (name, f.name) in KNOWN:
+                kind = "_Known(%s)" % kind
             rows.append((f.name, kind, self.say(f.doc)))
         self.write("\n\n@_struct\nclass %s(%s):" % (camel(name), BASES.get(name) or ("Id" if name in self.ids else "Struct")))
         self.write(doc_lines(4, self.say(doc) or "The id of a %s." % name[4:]))
         self.write("    c_name = %r" % name)
-        if name in USES:
-            self.write("    uses = {%s}" % ",\n            ".join("%r: %r" % item for item in USES[name].items()))
-            self.write("    needs = %r" % NEEDS[name])
+        required = tuple(f.name for f in fields if re.match(r"(\S+, )?required\b(?! if)", f.doc)
+                         and "; may be 0" not in f.doc and f.name not in self.counts(name, fields))
+        for table, value in (("uses", self.uses(name, fields)), ("defaults", DEFAULTS.get(name)),
+                             ("needs", NEEDS.get(name)), ("positive", POSITIVE.get(name)), ("required", required)):
+            for line in folded("%s = %r" % (table, value), 110, "        ") if value else ():
+                self.write("    " + line)
         counts = self.counts(name, fields)
         if counts:
             self.write("    counts = %r" % counts)
@@ -578,6 +594,19 @@ class Writer:
         for f in self.h.functions:
             if self.owner(f) == name:
                 self.method(f, name)
+
+    def uses(self, name, fields):
+        """The conditions of USES as Python has them: {field: ((other, words), ...)}."""
+        found, types = {}, {f.name: f.type for f in fields}
+        for one, text in USES.get(name, {}).items():
+            for condition in text.split():
+                other, _, words = condition.strip("!").partition("=")
+                known = [value.lower() for value, _, _ in self.h.enums.get(types.get(other), ((), ""))[0]]
+                if one not in types or other not in types or words and not all(
+                        any(value.endswith("_" + word) for value in known) for word in words.split("|")):
+                    fail("no such field or word in USES: %s of %s: %s" % (one, name, condition))
+                found.setdefault(one, []).append((other, tuple(words.split("|")) if words else condition[0] != "!"))
+        return {one: tuple(conditions) for one, conditions in found.items()}
 
     # -- functions --
     def owner(self, f):
@@ -796,6 +825,10 @@ class Writer:
             key = ", (%r, self)" % f.name if owner not in HANDLES else ""
             if any(m.call or m.type in h.calls or m.type in ("dem_motion", "dem_region") or m.type in self.ids for m in members):
                 pre.append("%s = %s._bound(%s%s)" % (a.name, world, a.name, key))
+            for m in members:
+                if m.type == "dem_progress_fn":
+                    pre += ["if %s is None:" % m.name,
+                            "    %s._%s = %s._callback(%s, _go_on, None)" % (a.name, m.name, world, camel(m.type))]
             note = None
             for m in members:
                 if m.name in taken:
@@ -1024,7 +1057,11 @@ class Writer:
                     world, world, head, inner, world, world, call)]
             return [run] + (["return " + ", ".join(name for name, _ in outs)] if outs else [])
         if f.type == "dem_result":
-            lines = ["%s._ok(%s)" % (world, call)]
+            arrays = [a.name for a in f.arguments if a.pointer and a.const and a.type in NUMBERS]
+            rows = ", grains" if f.name == "dem_grains_add" else ""
+            if arrays and "count" in [a.name for a in f.arguments]:
+                rows = ", dict(%s)" % ", ".join("%s=%s" % (name, name) for name in arrays)
+            lines = ["%s._ok(%s%s)" % (world, call, rows)]
             if outs:
                 shown = []
                 for o, size in outs:
@@ -1210,12 +1247,43 @@ class Writer:
         return "\n".join(self.out) + "\n"
 
 
+# what holds the lengths of arrays whose comments do not say it; "_per_body": the numbers on bodies of the world
+LENGTHS = {"dem_contact_who": "_per_body", "dem_body_state": "_per_body", "dem_contact_rows": "count",
+           "dem_bodies": "count"}
+KNOWN = {("dem_wall_loads", "contacts")}        # numbers of the last step that dem.h keeps when bodies or walls change
 SPOILING = {"dem_%s_fn" % name for name in "law law_rows law_rate reals body_force motion".split()}  # state is lost if they fail
-USES = {"dem_motion": {         # fields that only some kinds use
-    "velocity": ("translating", "oscillating", "servo"), "speed": ("rotating",), "amplitude": ("oscillating",), "frequency": ("oscillating",),
-    "phase": ("oscillating",), "start": ("translating", "rotating", "oscillating", "table", "servo"), "function": ("user",),
-    "ramp": ("translating", "rotating", "oscillating", "servo"), "load": ("servo",), "area": ("servo",), "travel": ("servo",),
-    "table": ("table", "servo"), "table_repeats": ("table",)}}
+SPRINGS, IMPULSES, CSV = "response=springs", "response=impulses", "kind=csv"
+# Fields that have a use beside other fields only, as their comments say. kind=word|word: where the field `kind` is one
+# of these words; other: where the other is given; !other: where it is not.
+USES = {
+    "dem_motion": {
+        "velocity": "kind=translating|oscillating|servo", "speed": "kind=rotating", "amplitude": "kind=oscillating",
+        "frequency": "kind=oscillating", "phase": "kind=oscillating", "function": "kind=user",
+        "start": "kind=translating|rotating|oscillating|table|servo",
+        "ramp": "kind=translating|rotating|oscillating|servo", "load": "kind=servo !table",
+        "area": "kind=servo", "travel": "kind=servo", "table": "kind=table|servo", "table_repeats": "kind=table"},
+    "dem_world_desc": {
+        "thickness": "planar", "normal_law": SPRINGS, "tangent_law": SPRINGS + " !law",
+        "rolling_law": SPRINGS + " !law", "tension": SPRINGS, "friction_load": SPRINGS, "slider": SPRINGS,
+        "convention": SPRINGS, "law_memory": "law", "law_stiffness": "law", "growth_interval": "growth",
+        "cone": IMPULSES, "solver": IMPULSES, "sweeps": IMPULSES, "tolerance": IMPULSES, "cold_start": IMPULSES,
+        "unsolved_stops": IMPULSES},
+    "dem_sizes": {
+        "median": "kind=lognormal|normal", "spread": "kind=lognormal", "scale": "kind=weibull|exponential",
+        "modulus": "kind=weibull", "radius": "kind=sieve_curve", "passing": "kind=sieve_curve",
+        "deviation": "kind=normal"},
+    "dem_joint_desc": {
+        "axis": "kind=revolute", "motor": "kind=revolute", "speed": "motor=speed", "torque": "motor=speed|torque",
+        "wall": "!b"},
+    "dem_output_desc": {
+        "wall": CSV, "columns": CSV, "values": CSV, "mixing": CSV, "outlet": CSV, "function": "kind=call",
+        "field": "kind=field_csv", "z0": "kind=walls", "z1": "kind=walls"},
+    "dem_cluster_desc": {"rays": "mass=union", "volume": "mass=given", "centre": "mass=given", "inertia": "mass=given"},
+    "dem_cell_desc": {"stress": "rate_most"}, "dem_rail_desc": {"velocity": "axes", "spin": "axes", "wall": "axes"},
+    "dem_mixing_desc": {"centre": "axis"}, "dem_events_desc": {"begins": "function"}}
+DEFAULTS = {"dem_world_desc": {"thickness": 1}}
+PRESSES = "velocity is the direction in which the wall presses; reverse it to press the other way"
+POSITIVE = {"dem_motion": {"load": PRESSES}, "dem_motion_row": {"load": PRESSES}}
 NEEDS = {"dem_motion": {"translating": ("velocity",), "rotating": ("speed",), "oscillating": ("amplitude", "frequency"), "servo": ("load table",)}}
 BASES = {"dem_vec3": "Vector", "dem_quat": "Numbers"}
 # functions that dem.py adds to the library; loaded where they are there

@@ -15,6 +15,7 @@ import math
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -1642,7 +1643,7 @@ def _():
     height = dict(name="height", unit="m", function=lambda given: calls.append(1) or given.totals.centre.z)
     for observables in ([height], [dem.Observable(**height)], dem.Observable(**height), height):
         del calls[:]
-        same((world.trials_run(duration=1e-3, budget=0.5, observables=observables).observable_count, bool(calls)), (1, True))
+        same((world.trials_run(duration=1e-3, budget=10, observables=observables).observable_count, bool(calls)), (1, True))
     with warnings.catch_warnings(record=True) as seen:
         warnings.simplefilter("always")
         dem.World(law=lambda c, memory, force: setattr(force, "normal", c.who.radius_a))
@@ -1699,7 +1700,8 @@ def _():
             (TypeError, lambda: dem.World(gravity=-9.81), "World: gravity: -9.81"), (TypeError, lambda: world.feed(radius="a"), "World.feed: radius: "),
             (TypeError, lambda: world.wall_plane(glass, (0, 0, 0), (0, 0, 1)).motion_set(kind="rotating", speed="a"), "Wall.motion_set: speed: "),
             (TypeError, lambda: world.cell_set(rate="a"), "World.cell_set: rate: "), (TypeError, lambda: world.run(1e-3, "p"), "World.run: progress: 'p'"),
-            (ValueError, lambda: dem.World(threads=100), "threads=100"), (ValueError, lambda: dem.World(law_memory=99), "law_memory=99"),
+            (ValueError, lambda: dem.World(threads=100), "threads=100"), (ValueError, lambda: dem.World(
+                law=lambda *_: None, law_memory=99), "law_memory=99"),
             (ValueError, lambda: world.group("coarse"), "World.group: 'coarse'", "World(groups='coarse')"),
             (ValueError, lambda: world.contacts, "world.step", "world.contacts_each"), (TypeError, lambda: world.bonds_make(0.1), "make is missing"),
             (TypeError, lambda: dem.World(tangent_law=True), "World: tangent_law: True"),
@@ -1773,6 +1775,338 @@ def _():
                         (dem.ContactForce, ("load: N, >= 0: L of Coulomb", "elastic: N, the part of"))):
         for line in lines:
             same(line in kind.__doc__, True, "%s in the docstring of %s" % (line, kind.__name__))
+
+
+# ---- mistakes that are refused by name ----
+
+def refused(kind, calls):
+    """Each call raises this kind of exception, which is a dem.Error, with these words."""
+    for call, *words in calls:
+        same(isinstance(raises(kind, call, *words), dem.Error), True, words[0])
+
+
+@test("numbers on bodies that a function sees are not read or written beyond their end")
+def _():
+    two = dict(body_reals="heat age")
+
+    def run(use, **more):
+        def law(c, memory, force):
+            force.normal = 1e4*c.overlap
+            use(c.who)
+        world, glass = heap(law=law, law_who=1, law_stiffness=1e4, **more)
+        world.spheres(glass, [(0, 0, 0.0099), (0.0199, 0, 0.0099)], radius=0.01)
+        world.step(2)
+
+    def read(who):
+        return getattr(who, name)[index]
+
+    def write(who):
+        getattr(who, name)[index] = 1.0
+    for name in ("reals_a", "reals_b", "rate_a", "rate_b"):
+        for index in (2, -3, 10**6):
+            words = "ContactWho.%s: %d is given" % (name, index), "numbers 0 to 1; World(body_reals=...) names 2"
+            refused(IndexError, [(lambda: run(read, **two), *words)])
+            if "rate" in name:
+                refused(IndexError, [(lambda: run(write, **two), *words)])
+        index = 0
+        refused(IndexError, [(lambda: run(read), "ContactWho.%s: 0 is given" % name, "no numbers", "names 0")])
+    name = "reals_a"
+    refused(dem.FieldError, [(lambda: run(write, **two), "a function may only read it")])
+    seen = []
+    run(lambda who: seen.append((len(who.reals_a), who.reals_b[-1], list(who.rate_a), bool(who.rate_b),
+                                 copy.copy(who).reals_a[:])), **two)
+    same(seen[0], (2, 0.0, [0.0, 0.0], True, []))           # a copy has no pointers
+    raises(ValueError, lambda: run(lambda who: seen.append(who.reals_a), **two), "keeps its argument c")
+    for more in (dict(body_force=lambda body, *_: body.reals[2] and None), dict(growth=lambda body, *_: body.reals[2])):
+        world, glass = heap(**two, **more)
+        ball = world.sphere(glass, 0.01, (0, 0, 0.1))
+        ball.reals_set([3, 4])
+        refused(IndexError, [(lambda: world.step(1), "BodyState.reals: 2 is given", "names 2")])
+    same((list(ball.state.reals), ball.state.to_dict()["reals"]), ([3, 4], [3, 4]))
+    raises(dem.FieldError, lambda: ball.state.reals.__setitem__(0, 1), "body.reals_set(...)")
+    world, glass = heap(groups="a b")
+    same(list(world.sphere(glass, 0.01, (0, 0, 1)).state.reals), [])
+    refused(IndexError, [(lambda: world.bodies_memory.groups[1], "(1,)")])
+    who = dem.Contact(who=dem.ContactWho(reals_a=[1, 2], rate_a=[0, 0])).who    # made by hand to test a law
+    same((list(who.reals_a), len(who.reals_b)), ([1, 2], 0))
+
+
+@test("a law of rows in Python gives the bits of the law, and is not used beyond its columns")
+def _():
+    def law(c, memory, force):
+        force.normal = 1e4*c.overlap
+
+    def rows(r):
+        for q in range(r.count):
+            r.normal_force[q] = 1e4*r.overlap[q]
+            r.slides[q] = r.tangent[0][q] = r.tangent[1][q] = r.tangent[2][q] = 0
+            r.moment[0][q] = r.moment[1][q] = r.moment[2][q] = 0
+        same((len(r.normal), r.normal[2].shape, len(r.memory), r.energy[0]), (3, (r.count,), 0, None))
+        beyond(r)
+
+    def run(**more):
+        world, glass = heap(law=law, law_stiffness=1e4, **more)
+        world.spheres(glass, [(0.0199*i, 0, 0.0099) for i in range(20)], radius=0.01)
+        world.step(5)
+        return world.hash
+
+    def beyond(r):
+        pass
+    same(run(law_rows=rows), run())
+    for use in (lambda r: r.overlap[r.count], lambda r: r.normal_force.__setitem__(10**6, 1.0),
+                lambda r: r.tangent[2].__setitem__(-10**6, 1.0)):
+        beyond = use
+        refused(IndexError, [(lambda: run(law_rows=rows), "array[...]: ")])
+
+
+@test("an argument that has no use beside the others is refused, with what it belongs to")
+def _():
+    world, glass = heap()
+    rigid = dem.World(response="impulses", dt=1e-3, orientations=1)
+    steel = rigid.material(density=2500)
+    a, b = rigid.sphere(steel, 0.1, (1, 0, 0)), rigid.sphere(steel, 0.1, (3, 0, 0))
+    wall = rigid.wall_plane(steel, (0, 0, -9), (0, 0, 1))
+    ball, box, springs = world.sphere(glass, 0.01, (0, 0, 1)), (0, 0, 0, 1, 1, 1), "response='springs'"
+
+    def law(c, memory, force):
+        pass
+
+    def impulses(**more):
+        return dem.World(response="impulses", dt=1e-3, **more)
+
+    def output(kind, **more):
+        return world.output(kind=kind, path=os.path.join(WORK.name, "unused"), interval=1, **more)
+
+    def joint(kind, **more):
+        return rigid.joint(kind=kind, a=a, **more)
+
+    def sizes(**more):
+        return world.sizes_draw(dem.Sizes(**more), 3, 0)
+
+    def cluster(**more):
+        return world.shape_cluster(positions=[(0, 0, 0), (1e-3, 0, 0)], radius=1e-3, **more)
+
+    def servo(**more):
+        return world.wall_plane(glass, (0, 0, 5), (0, 0, -1)).motion_set(kind="servo", velocity=(0, 0, -1), **more)
+    refused(ValueError, (
+        (lambda: dem.World(sweeps=5), "World: sweeps: 5", "with " + springs, "belongs to response='impulses'"),
+        (lambda: dem.World(cone="convex"), "World: cone: 'convex'"),
+        (lambda: dem.World(solver="apgd"), "World: solver: 'apgd'"),
+        (lambda: dem.World(tolerance=1), "World: tolerance"),
+        (lambda: dem.World(cold_start=1), "World: cold_start"),
+        (lambda: dem.World(unsolved_stops=1), "World: unsolved_stops"),
+        (lambda: impulses(normal_law="linear"), "World: normal_law: 'linear'", "belongs to " + springs),
+        (lambda: impulses(tension="clipped"), "World: tension"),
+        (lambda: impulses(slider="spring"), "World: slider"),
+        (lambda: dem.World(tangent_law="spring", law=law), "World: tangent_law", "beside law=..."),
+        (lambda: dem.World(law_memory=3), "World: law_memory: 3", "without law=...", "leave out law_memory"),
+        (lambda: dem.World(law_stiffness=1e4), "World: law_stiffness"),
+        (lambda: dem.World(growth_interval=1), "World: growth_interval", "give growth=..."),
+        (lambda: dem.World(thickness=0.01), "World: thickness", "give planar=..."),
+        (lambda: output("vtp", columns="a"), "World.output: columns: 'a'", "kind='vtp'", "kind='csv'"),
+        (lambda: output("csv", function=law), "World.output: function", "kind='call'"),
+        (lambda: output("csv", z0=1), "World.output: z0", "kind='walls'"),
+        (lambda: output("vtp", mixing=dict(box=box, cells=(1, 1, 1))), "World.output: mixing"),
+        (lambda: joint("point", axis=(0, 0, 1)), "World.joint: axis", "kind='revolute'"),
+        (lambda: joint("point", motor="speed"), "World.joint: motor: 'speed'", "kind='revolute'"),
+        (lambda: joint("revolute", axis=(0, 0, 1), speed=1), "World.joint: speed", "motor='none'", "motor='speed'"),
+        (lambda: joint("revolute", axis=(0, 0, 1), torque=1), "World.joint: torque", "motor='speed' or 'torque'"),
+        (lambda: joint("point", b=b, wall=wall), "World.joint: wall", "beside b=..."),
+        (lambda: sizes(min=1, max=2, median=1), "World.sizes_draw: sizes: median", "kind='uniform'",
+         "kind='lognormal' or 'normal'"),
+        (lambda: sizes(kind="normal", median=1, deviation=1, spread=1), "sizes: spread", "kind='lognormal'"),
+        (lambda: sizes(kind="weibull", min=1, scale=1, modulus=2, radius=[1, 2]), "sizes: radius"),
+        (lambda: world.feed(material=glass, radius=[1e-3], amount=[1], limited=1, box=box, sizes=[
+            dem.Sizes(kind="uniform", min=1e-3, max=2e-3, scale=1)]), "World.feed: sizes: scale"),
+        (lambda: cluster(volume=1e-9), "World.shape_cluster: volume", "mass='union'", "mass='given'"),
+        (lambda: cluster(mass="sum", rays=64), "World.shape_cluster: rays", "mass='union'"),
+        (lambda: ball.rail_set(velocity=(0, 0, 1)), "Body.rail_set: velocity", "give axes=..."),
+        (lambda: world.mixing(box=box, cells=(1, 1, 1), radius_max=1, centre=(0, 0, 1)), "World.mixing: centre"),
+        (lambda: heap(ledger=1)[0].events_record(begins=1), "World.events_record: begins", "function=..."),
+        (lambda: servo(load=1, table=[(0, (0, 0, 0), None, 1), (1, (0, 0, 0), None, 2)]), "load", "beside table=...")))
+    same(joint("revolute", axis=(0, 0, 1), motor="torque", torque=1).state.turned, 0.0)
+    for again in (dem.World(), dem.World(planar=1, thickness=0.01), rigid):     # a desc makes the same world again
+        same(dem.World(**again.desc.to_dict()).desc.thickness, again.desc.thickness)
+    impulses(normal_law="hertz", law=None)                  # the defaults
+    same((ball.rail_set(axes=0), sizes(kind="exponential", min=1, scale=2)[0] > 1), (None, True))
+
+
+@test("a feed without a box, and a call without another required field, are refused by name")
+def _():
+    world, glass = heap()
+    box, feed = (0, 0, 0, 1, 1, 1), dict(radius=[1e-3], amount=[1], rate=10)
+    refused(ValueError, (
+        (lambda: world.feed(material=glass, **feed), "World.feed: box was not given", "centres lie inside",
+         "give box=(x0, y0, z0, x1, y1, z1)"),
+        (lambda: world.feed(box=box, **feed), "World.feed: material was not given"),
+        (lambda: world.feed(material=glass, box=box, rate=10), "World.feed: radius was not given"),
+        (lambda: world.outlet(), "World.outlet: box"),
+        (lambda: world.field(cells=(1, 1, 1)), "World.field: box"),
+        (lambda: world.field(box=box), "World.field: cells"),
+        (lambda: world.mixing(cells=(1, 1, 1)), "World.mixing: box"),
+        (lambda: world.spheres_fill(glass, 1e-3, {}, 3, 1), "World.spheres_fill: region: box"),
+        (lambda: world.bodies_remove(region={"cylinder": "z"}), "World.bodies_remove: region: box"),
+        (lambda: world.material(young=1e7), "World.material: density", "kg/m3"),
+        (lambda: world.joint(a=None), "World.joint: kind"),
+        (lambda: world.wall_sieve(glass, kind="wires", bar=1), "World.wall_sieve: aperture"),
+        (lambda: world.shape_cluster(), "World.shape_cluster: positions"),
+        (lambda: world.trials_run(), "World.trials_run: duration"),
+        (lambda: world.output(function=lambda *_: 0), "World.output: interval")))
+    same(world.feed(material=glass, box=(0, 0, 1, 0, 0, 1), **feed).id, 1)      # a point is a box
+
+
+@test("a cell with a stress but no rate_most, and a servo with a load below 0, are refused")
+def _():
+    cell = dem.World(domain=(0, 0, 0, 1, 1, 1), boundary=["periodic"]*3)
+    for more in ({}, dict(rate=(0, 0, -1))):
+        refused(dem.ArgumentError, [(lambda: cell.cell_set(stress=(1, 1, 1), **more), "World.cell_set: stress",
+                                     "without rate_most=... it has no use; give rate_most=...")])
+    cell.cell_set(rate=(0, 0, -1), stress=(1, 1, 1), rate_most=(1, 1, 0))
+    cell.cell_set(rate_most=(1, 1, 1))                      # towards the stress 0
+    world, glass = heap()
+    lid = world.wall_plane(glass, (0, 0, 5), (0, 0, -1))
+
+    def press(**more):
+        return lid.motion_set(kind="servo", velocity=(0, 0, -1), **more)
+    refused(dem.ArgumentError, [(lambda: press(load=-1), "Wall.motion_set: load: -1.0", "must be >= 0", "reverse it")])
+    for table in ([(0, (0, 0, 0), None, 1), (1, (0, 0, 0), None, -1)], [dict(time=0, load=-1), dict(time=1, load=1)],
+                  [dem.MotionRow(time=0), dem.MotionRow(time=1, load=-1)]):
+        refused(dem.ArgumentError, [(lambda: press(table=table), "Wall.motion_set: table: load", "reverse it")])
+    same((press(load=1), lid.servo.target >= 0), (None, True))
+
+
+@test("Ctrl-C ends World.trials_run within a second: alone, in threads, in a pool of processes")
+def _():
+    code = """
+import concurrent.futures, multiprocessing, os, signal, sys, threading, time
+sys.path.insert(0, %r)
+import dem
+
+def sweep(seed):
+    with dem.World(gravity=(0, 0, -9.81), threads=1) as world:
+        glass = world.material(density=2500, young=1e7, poisson=0.25, restitution=0.5, friction=0.5)
+        world.wall_plane(glass, (0, 0, 0), (0, 0, 1))
+        world.spheres_fill(glass, 2e-3, (-.02, -.02, 0, .02, .02, .2), 300, seed)
+        return world.trials_run(duration=50, budget=1e3).advice
+
+def interrupt():
+    print(time.time(), flush=True)
+    os.kill(0, signal.SIGINT)           # all processes, as a terminal does
+
+if __name__ == "__main__":
+    kind = sys.argv[1]
+    dem.load()
+    threading.Timer(3 if kind == "processes" else 1, interrupt).start()
+    if kind == "alone":
+        sweep(1)
+    elif kind == "threads":
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            list(pool.map(sweep, range(4)))
+    else:
+        with multiprocessing.get_context("spawn").Pool(2) as pool:
+            pool.map(sweep, range(4))
+""" % PYTHON
+    path = os.path.join(WORK.name, "sweep.py")
+    with open(path, "w") as file:
+        file.write(code)
+    for kind in ("alone", "threads", "processes"):
+        child = subprocess.Popen([sys.executable, "-B", path, kind], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 text=True, start_new_session=True)
+        try:
+            out, error = child.communicate(timeout=30)
+            took = time.time() - float(out)
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(child.pid, signal.SIGKILL)        # what is left of its processes
+        more = re.findall(r"^\S*(?:Error|Warning|Exception)\b.*|.*dem\.h:.*", error, re.M)
+        same((took < 2, error.rstrip().split("\n")[-1], more), (True, "KeyboardInterrupt", []),
+             "%s: %.1f s: %s" % (kind, took, error[-500:]))
+    import _thread
+    world, glass = heap()
+    world.sphere(glass, 0.01, (0, 0, 1))
+    world.step(10)
+    before = world.hash
+    threading.Timer(0.3, _thread.interrupt_main).start()
+    raises(KeyboardInterrupt, lambda: world.trials_run(duration=1e4, budget=1e4))
+    same(world.hash, before)
+    world.run(0.01)                                         # the state is intact
+
+
+@test("a message about an array of a call names the array and the index, not a body")
+def _():
+    nan, (world, glass) = float("nan"), heap(body_reals="heat")
+    shape = world.shape_ellipsoid((3e-3, 2e-3, 2e-3))
+    world.spheres(glass, [(0.1*i, 0, 1) for i in range(5)], radius=0.01)
+    world.bodies[1].remove()                                # slots are not rows
+    two, bodies, up = [(0, 0, 3), (0, 0, 4)], world.bodies, (0, 0, 1)
+
+    def add(positions=two, velocities=None, **more):
+        return world.spheres(glass, positions, velocities, **more)
+
+    def shapes(**more):
+        return world.bodies_add(glass, shape, two, **more)
+    before = bodies.positions, bodies.velocities, bodies.spins, bodies.reals
+    for call, text in (
+            (lambda: add([up, (0, nan, 1)], radius=0.01), "positions[1] is (0, nan, 1) m, must be finite"),
+            (lambda: add(velocities=[up, (0, 0, 1e20)], radius=0.01), "velocities[1] is (0, 0, 1e+20) m/s"),
+            (lambda: add(radii=[1, -1]), "radii[1] is -1 m"), (lambda: add(radius=-1), "radius is -1 m"),
+            (lambda: world.sphere(glass, 0.01, (0, 0, nan)), "position is (0, 0, nan) m"),
+            (lambda: shapes(orientations=[(1, 0, 0, 0), (0, 0, 0, 0)]), "orientations[1] is (0, 0, 0, 0)"),
+            (lambda: shapes(spins=[(0, nan, 0), up]), "spins[0] is (0, nan, 0) rad/s"),
+            (lambda: shapes(scales=[1, -1]), "scales[1] is -1"),
+            (lambda: world.grains(glass, dem.Grains(positions=two, radii=[1, -1])), "radii[1] is -1 m"),
+            (lambda: setattr(bodies, "positions", [up]*3 + [(0, 0, nan)]), "World.bodies.positions[3] is (0, 0, nan)"),
+            (lambda: setattr(bodies, "velocities", [(0, 1e20, 1)]*4), "World.bodies.velocities[0] is (0, 1e+20, 1)"),
+            (lambda: setattr(bodies, "spins", [up, up, (nan, 0, 0), up]), "World.bodies.spins[2] is (nan, 0, 0)"),
+            (lambda: setattr(bodies, "reals", [1, 2, nan, 4]), "World.bodies.reals[2] is (nan)"),
+            (lambda: world.bodies_reals_set([1, 2, 3, nan]), "World.bodies.reals[3] is (nan)"),
+            (lambda: add([up, (0, 0)], radius=0.01), "row 1 has the shape (2,)")):
+        message = str(raises(ValueError, call, text))
+        same("of body" in message or "of sphere" in message, False, message)
+    same((bodies.positions, bodies.velocities, bodies.spins, bodies.reals) == before, True, "nothing was changed")
+
+
+@test("contacts of a wall after bodies were removed: 0 if none is left, else refused by name")
+def _():
+    for more in ({}, dict(response="impulses", dt=1e-3)):
+        world, glass = heap(**more)
+        wall = world.wall_plane(glass, (0, 0, 0.001), (0, 0, 1))
+        same(wall.loads.contacts, 0)
+        first, second = (world.sphere(glass, 0.01, (x, 0, 0.0109)) for x in (0, 0.1))
+        world.step(3)
+        same(wall.loads.contacts, 2)
+        first.remove()
+        loads = wall.loads
+        refused(dem.ArgumentError, [(lambda: loads.contacts, "WallLoads.contacts: ", "not known", "world.step()")])
+        same((loads.to_dict()["contacts"], "contacts=None" in repr(loads)), (None, True))
+        same(loads.force.z < 0, True, "the force of the last step")
+        world.contacts_each()
+        same(wall.loads.contacts, 1)
+        second.remove()
+        same(wall.loads.contacts, 0)
+        world.step(1)
+        same((wall.loads.contacts, wall.loads.touched), (0, 1))
+
+
+@test("each method that is called on its class raises a dem.Error that names what it needs")
+def _():
+    refused(TypeError, (
+        (lambda: dem.World.step(1), "World.step: 1 (int) is given in the place of the World that this call needs",
+         "write world.step(...)"),
+        (lambda: dem.World.close(), "World.close: nothing is given in the place of the World"),
+        (lambda: dem.Body.set(velocity=(0, 0, 1)), "Body.set: nothing is given in the place of the Body"),
+        (lambda: dem.Wall.motion_set(dem.World()), "Wall.motion_set: ", "(World) is given in the place of the Wall"),
+        (lambda: dem.Rows.to_dict(), "write world.bodies.to_dict(...)")))
+    calls = 0
+    for kind in [dem.World, dem.Replay, dem.Slabs, dem.Rows, dem.Array, dem.Structs] + dem.structs:
+        for name in dir(kind):
+            if name[0] != "_" and inspect.isfunction(inspect.getattr_static(kind, name)):
+                for values in ((), (1,), ("x", 2), (dem, 1)):
+                    refused(TypeError, [(lambda: getattr(kind, name)(*values), " that this call needs; write ")])
+                    calls += 1
+    same(calls > 900, True, "calls: %d" % calls)
+    world, glass = heap()
+    same((dem.World.step(world, 1), world.steps, dem.Vec3.dot(dem.Vec3(1, 2, 3), (1, 1, 1))), (None, 1, 6.0))
 
 
 # ---- all calls ----

@@ -137,6 +137,8 @@ def calls():
                 if isinstance(member, property):
                     add(label + about, lambda s, v, get=get, name=name: repr(getattr(get(s), name)))
                 elif callable(getattr(kind, name)):
+                    if not about:
+                        add("dem.%s({})" % label, lambda s, v, kind=kind, name=name: getattr(kind, name)(v), False)
                     add(label + "()" + about, method(kind, name, parameters(getattr(kind, name)), None, get))
             if isinstance(member, property):
                 add("%s = {}" % label, lambda s, v, kind=kind, name=name: setattr(s.get(kind.__name__), name, v))
