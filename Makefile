@@ -197,7 +197,7 @@ bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/elli
 
 # figures that need no quiet machine: a busy one gives the same bits
 pages: $(LESSONS) build/readme_program ### write the figures that lessons and the README's program print into the pages
-	@JOBS=$(JOBS) sh bench/pages.sh lessons heap files
+	@JOBS=$(JOBS) sh bench/pages.sh lessons heap
 
 pages-check: ### list the measured figures in README.md and docs/ that are older than their code; STRICT=1: fail if there are any
 	@STRICT=$(STRICT) sh tests/pages.sh

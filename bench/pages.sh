@@ -1,5 +1,5 @@
 # sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [peers_two] [blocks] [ellipsoids]
-#                   [instructions] [lessons] [heap] [files]
+#                   [instructions] [lessons] [heap]
 # Measures again and replaces tables and pictures in docs/ (without arguments: effects, accuracy, roofline, clusters).
 #   effects     what effects cost, in accuracy.md and README.md
 #   screener    times of the screener, in screener.md
@@ -10,11 +10,10 @@
 #   instructions  instructions of each part of dem.h, in roofline.md; needs no quiet machine
 #   lessons     what the twelve lessons print, in teaching.md
 #   heap        what the program in README.md prints
-#   files       the files that web.md lets readers copy
 #   others      the page of the same name
 # Tables are between <!-- NAME: begin --> and <!-- NAME: end -->. Each bench writes its own as page.md; full tables go to
 # docs/data. Needs a quiet machine: a page that was measured on a busy one begins with <!-- busy --> and is not copied.
-# lessons, heap and files need none (make pages).
+# lessons and heap need none (make pages).
 # Below the begin of a block a stamp says how its figures were measured, and on which code (bench/figures.txt, bench/code.sh):
 #   <!-- NAME: COMMAND; PROCESSOR; commit HASH; code PARTS DIGESTS -->
 # A table in docs/data has the same in its first line: # COMMAND; PROCESSOR; commit HASH; code PARTS DIGESTS
@@ -176,19 +175,6 @@ gas_speeds() {
         { printf "| %d | %.1f | %.2g | %.1f | %.0f | %.2g | %.0f |\n", $1, 1e-6*$2, 1e-6*$3, $2/$3, 1e-6*$4, 1e-6*$5, $4/$5 }' "$1"
 }
 
-# the files of the browser lesson
-files() {
-    printf '| file | lines | purpose |\n|---|---|---|\n'
-    for f in lesson.c lesson.html make.sh; do
-        case $f in
-        lesson.c) purpose="the scenes and the functions that the page calls" ;;
-        lesson.html) purpose="drawing and sliders" ;;
-        *) purpose="the two commands that join both into one page" ;;
-        esac
-        printf '| [%s](../examples/web/%s) | %d | %s |\n' $f $f "$(wc -l < examples/web/$f)" "$purpose"
-    done
-}
-
 at=build/out
 for what in "$@"; do
     case $what in
@@ -254,7 +240,6 @@ for what in "$@"; do
     heap)
         mkdir -p $at/readme && (cd $at/readme && ../../readme_program > log 2>&1) || { cat $at/readme/log; exit 1; }
         { echo '```'; grep '^slope' $at/readme/log; echo '```'; } > build/page.heap && splice README.md heap build/page.heap || exit 1 ;;
-    files) files > build/page.files && splice web.md files build/page.files || exit 1 ;;
     peers)
         # processor times: other programs may run at the same time
         LONG=1 SCENES="bed million gas drum mesh mixture clumps3 clumps clumps10 clumps30 servo_plane servo_mesh" CORES=1 sh bench/peers.sh \

@@ -25,6 +25,7 @@
 #include "../dem.h"
 #include "study.h"
 #include "exam.h"
+#include "exam_curves.h"
 
 #ifdef LAW_FILE
 #include LAW_FILE
@@ -86,72 +87,6 @@ static const examinee examinees[] = {
     {"hertz_viscous", hertz_viscous, 0, 0, 0, 0, DEM_NORMAL_HERTZ, -1, 0, 0, 0}};
 #endif
 
-/* ---- curves ---- */
-
-enum { POINTS = 2400 };
-typedef struct curve { int count; double x[POINTS], y[POINTS]; } curve;
-static void curve_add(curve *c, double x, double y) {
-    if (c->count < POINTS) { c->x[c->count] = x; c->y[c->count++] = y; }
-}
-/* Loads, partly unloads, reloads and unloads a contact, from the range and back: force (N) against overlap (m). */
-static void press(const exam *e, double speed, curve *c) {
-    const double deep = e->deep*e->radius, apart = exam_last(e)/deep, turn[5] = {0.7, 0.3, 1, 0.5, apart};
-    exam_path p;
-    int part, k;
-    exam_begin(&p, e);
-    c->count = 0;
-    for (part = 0; part < 5; part++) {
-        const double from = part ? turn[part - 1] : exam_first(e)/deep;
-        for (k = 1; k <= 200; k++) {
-            exam_go_on(&p, deep*(from + (turn[part] - from)*k/200), 0, 0, 0, 0, 1, speed);
-            curve_add(c, (double)p.c.overlap, (double)p.f.normal);
-        }
-    }
-}
-/* Slides to and fro by `far` (m), or rolls by it (rad), three times at a constant overlap. */
-static void cycle(const exam *e, double far, int rolling, curve *c) {
-    exam_path p;
-    double at = 0;
-    int part, k;
-    exam_begin(&p, e);
-    exam_go_on(&p, e->deep*e->radius, 0, 0, 0, 0, 100, 1e-3*e->speed);
-    c->count = 0;
-    for (part = 0; part < 6; part++) {
-        const double to = part%2 ? -far : far, step = (to - at)/200;
-        for (k = 0; k < 200; k++) {
-            exam_go_on(&p, e->deep*e->radius, rolling ? 0 : step, 0, rolling ? step : 0, 0, 1, 1e-3*e->speed);
-            at += step;
-            curve_add(c, at, rolling ? (double)p.f.moment.x : (double)p.f.tangent.x);
-        }
-        at = to;
-    }
-}
-static void bounces(const exam *e, curve *c) {
-    int k;
-    c->count = 0;
-    for (k = 0; k <= 16; k++) {
-        exam_impact m;
-        memset(&m, 0, sizeof m);
-        m.speed = e->speed*pow(10, -2 + k/4.0); m.step = 0.25; m.early = 2.5;
-        exam_collide(e, &m);
-        if (m.energy >= 0) curve_add(c, m.speed, m.normal/m.speed);
-    }
-}
-/* Energy after over before, and slip over normal speed, against the angle. */
-static void slants(const exam *e, curve *energy, curve *slip) {
-    int k;
-    energy->count = slip->count = 0;
-    for (k = 0; k <= 34; k++) {
-        exam_impact m;
-        memset(&m, 0, sizeof m);
-        m.speed = e->speed; m.angle = 2.5*k/57.29578; m.step = 0.25; m.early = 2.5;
-        exam_collide(e, &m);
-        if (m.energy < 0) continue;
-        curve_add(energy, 2.5*k, m.energy);
-        curve_add(slip, 2.5*k, -m.slip/(m.speed*cos(m.angle)));
-    }
-}
-
 /* ---- the page ---- */
 
 /* Copies a picture that study.h has written into the page. */
@@ -167,7 +102,7 @@ static void paste(FILE *page, const char *name) {
     fputs("</figure>\n", page);
 }
 static void draw(FILE *page, const char *title, const char *x, const char *y, int log_x, double top, int count,
-                 const curve *curves, const char *const *names) {
+                 const exam_curve *curves, const char *const *names) {
     study_figure f;
     int k;
     memset(&f, 0, sizeof f);
@@ -179,7 +114,7 @@ static void draw(FILE *page, const char *title, const char *x, const char *y, in
 }
 static void portrait(const exam *e, const exam_sheet *sheet) {
     static const char *const rates[2] = {"quasi-static", "at impact speed"}, *const sizes[3] = {"small", "medium", "large"};
-    static curve c[3];
+    static exam_curve c[3];
     char name[120];
     FILE *page;
     int k;
@@ -198,17 +133,17 @@ static void portrait(const exam *e, const exam_sheet *sheet) {
         fprintf(page, "<tr><td%s<td>%s<td>%s\n", sheet->line[k].passed ? ">passed" : " class=\"found\">found",
                 sheet->line[k].asks, sheet->line[k].found);
     fputs("</table>\n", page);
-    press(e, 1e-5*e->speed, &c[0]);
-    press(e, e->speed, &c[1]);
+    exam_press(e, 1e-5*e->speed, &c[0]);
+    exam_press(e, e->speed, &c[1]);
     draw(page, "Loaded, unloaded, reloaded", "overlap (m)", "normal force (N)", 0, 0, 2, c, rates);
-    for (k = 0; k < 3; k++) cycle(e, e->deep*e->radius*(k == 0 ? 0.1 : k == 1 ? 0.4 : 2), 0, &c[k]);
+    for (k = 0; k < 3; k++) exam_cycle(e, e->deep*e->radius*(k == 0 ? 0.1 : k == 1 ? 0.4 : 2), 0, &c[k]);
     draw(page, "Slid to and fro", "slip (m)", "tangential force (N)", 0, 0, 3, c, sizes);
-    for (k = 0; k < 3; k++) cycle(e, k == 0 ? 0.002 : k == 1 ? 0.01 : 0.05, 1, &c[k]);
+    for (k = 0; k < 3; k++) exam_cycle(e, k == 0 ? 0.002 : k == 1 ? 0.01 : 0.05, 1, &c[k]);
     draw(page, "Rolled to and fro", "angle (rad)", "moment (N m)", 0, 0, 3, c, sizes);
     if (e->made) { study_close(page, name); return; }      /* bonded grains do not bounce */
-    bounces(e, &c[0]);
+    exam_bounces(e, &c[0]);
     draw(page, "Head-on impacts", "speed (m/s)", "restitution", 1, 1.1, 1, c, 0);
-    slants(e, &c[0], &c[1]);
+    exam_slants(e, &c[0], &c[1]);
     draw(page, "Oblique impacts: energy left", "angle from the normal (degrees)", "energy after over before", 0, 1.1, 1, c, 0);
     draw(page, "Oblique impacts: slip", "angle from the normal (degrees)", "slip after over normal speed before", 0, 0, 1,
          c + 1, 0);

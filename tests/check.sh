@@ -31,6 +31,7 @@ try "dem.h split into src/ and joined is dem.h" "mkdir -p \$bin && cp -r src \$b
 try "docs/options.md and docs/options_run.md are those of dem.h" "cc -I. -DDEM_STATIC -DDEM_NO_OPENMP tests/options.c -o \$bin -lm && \$bin > \$bin.txt && for part in '' _run; do awk -v part=\${part#_} -f tests/options.awk - dem.h < \$bin.txt | cmp - docs/options\$part.md || exit 1; done"
 try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.awk examples/replay/viewer.html dem.h | cmp - dem.h"
 [ "$1" = short ] || try "the exam of laws gives each law of a class its verdict" "make -s verdicts"
+try "the pages in examples/web/pages are those of their sources" "sh tests/web.sh"
 if [ "$1" = short ]; then                     # the long form runs them all
     make -s build/rooms/private.h
     for cc in "g++ -std=c++11 -x c++" "clang -std=c99"; do
@@ -222,7 +223,7 @@ if [ "$1" != short ]; then
     turn=2
     try "outside: make new, make install, pkg-config, CMake" "sh tests/outside.sh \$bin"
     if found node && { found wasm-ld || found wasm-ld-14; }; then
-        try "the browser lesson: the same digests in node, in a browser and native" "sh tests/web.sh \$bin.web; code=\$?; rm -rf \$bin.web; exit \$code"
+        try "the pages: the same digests, curves and exam in node, in a browser and native" "sh tests/web.sh \$bin.web; code=\$?; rm -rf \$bin.web; exit \$code"
     else skip "no compiler for WebAssembly, or no node (Debian packages clang, lld, wasi-libc, libclang-rt-14-dev-wasm32, nodejs)"; fi
     if found chromium; then
         try "replays play in a headless chromium" "cc -O1 -I. -DDEM_IMPLEMENTATION tests/write_replays.c -o \$bin -lm && REPLAYS=\$bin sh tests/browser.sh"

@@ -2,10 +2,10 @@
 // digests of the page's code, in node and in the browser, must be those of the native program; in the browser pictures
 // must move and grains be where they are said to be. PICTURES: a folder to put screenshots into. Ends with "N passed, N
 // failed".
-import { readFileSync, mkdtempSync, rmSync } from 'fs';
-import { createServer } from 'http';
-import { spawn, execFileSync } from 'child_process';
-import { tmpdir } from 'os';
+import { readFileSync } from 'fs';
+import { execFileSync } from 'child_process';
+import { gunzipSync } from 'zlib';
+import { open_page } from './page.mjs';
 
 const [dir, browser, pictures] = process.argv.slice(2);
 const page = readFileSync(dir + '/lesson.html', 'utf8');
@@ -18,7 +18,7 @@ function check(holds, what) {
 const native = words => (/digest (\w+)/.exec(execFileSync(dir + '/lesson', words.map(String)).toString()) ?? [])[1];
 
 // ---- the page's code in node ----
-const code = Buffer.from(/id="wasm"[^>]*>([^<]*)</.exec(page)[1], 'base64');
+const code = gunzipSync(Buffer.from(/id="wasm"[^>]*>([^<]*)</.exec(page)[1], 'base64'));
 const { instance: { exports: dem } } = await WebAssembly.instantiate(code,
   { wasi_snapshot_preview1: new Proxy({}, { get: () => () => 52 }) });
 dem._initialize?.();
@@ -68,31 +68,7 @@ async function probe() {
   }
   await fetch('/said', { method: 'POST', body: JSON.stringify(said) });
 }
-function run(what) {                           // one start of the browser: answers what was posted, or a screenshot
-  return new Promise(done => {
-    const home = mkdtempSync(tmpdir() + '/web-');
-    let said = null, log = '', child;
-    const server = createServer((asked, answer) => {
-      if (asked.url === '/slow') return void setTimeout(() => answer.end(), what.wait);     // holds the load event back
-      if (asked.url !== '/said') return void answer.end(asked.url === '/' ? page + what.more : '');
-      let body = '';
-      asked.on('data', part => { body += part; });
-      asked.on('end', () => { answer.end(); said = JSON.parse(body); child.kill(); });
-    });
-    server.listen(0, '127.0.0.1', () => {
-      child = spawn(browser, ['--headless', '--no-sandbox', '--user-data-dir=' + home, '--window-size=1200,760',
-        '--enable-logging=stderr', ...what.flags, `http://127.0.0.1:${server.address().port}/`]);
-      child.stderr.on('data', part => { log += part; });
-      const late = setTimeout(() => child.kill(), 90000);
-      child.on('close', () => {
-        clearTimeout(late);
-        server.close(); server.closeAllConnections?.();
-        rmSync(home, { recursive: true, force: true });
-        done({ said, console: log.split('\n').filter(line => /CONSOLE/.test(line) && !/favicon/.test(line)) });
-      });
-    });
-  });
-}
+const run = what => open_page(browser, page, what);
 if (browser) {
   const { said, console: lines } =
     await run({ more: `<script>(${probe})()</script>`, flags: ['--remote-debugging-port=0'], wait: 0 });

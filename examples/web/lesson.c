@@ -19,7 +19,9 @@
 #endif
 
 enum { DRUM, HOPPER, PILE, SHELL = 48, LINES = 2*SHELL, NUMBERS = 5 };
-static const dem_real pi = 3.14159265358979, r = 0.02, g = 9.81;     /* m, mean grain; m/s2 */
+static const dem_real pi = 3.14159265358979, g = 9.81;               /* m/s2 */
+static dem_real r = 0.02, broad = 1.4;              /* m: mean grain; drum of 2,000 grains */
+static void (*change)(dem_world_desc *desc, dem_material_desc *gravel);  /* for other grains, laws: lab.c; or null */
 
 /* one lesson at a time */
 static struct {
@@ -93,7 +95,7 @@ LESSON_API(lesson_set) int lesson_set(double friction, double restitution, doubl
     } else if (now.scene == PILE) {
         motion.kind = DEM_MOTION_TRANSLATING;
         motion.velocity.y = own;
-        motion.start = fmax(0, 0.5 - dem_world_time_get(now.world));        /* s, when the grains are at rest */
+        motion.start = fmax(0, 0.5*sqrt(r/0.02) - dem_world_time_get(now.world));   /* s, when the grains are at rest */
     }
     if (now.scene != HOPPER && dem_wall_motion_set(now.world, now.moving, &motion) != DEM_OK) return 1;
     return dem_material_set(now.world, now.material, &now.gravel) != DEM_OK;
@@ -118,12 +120,11 @@ LESSON_API(lesson_begin) int lesson_begin(int scene, int grains, double friction
     free(now.grains);
     memset(&now, 0, sizeof now);
     now.scene = scene;
-    now.R = 1.4*sqrt(grains/2000.0);
+    now.R = broad*sqrt(grains/2000.0);
     desc.planar = 1;
     desc.thickness = 2*r;
     desc.gravity.y = -g;
     desc.impact_speed = 1.5;                                            /* m/s */
-    now.world = dem_world_create(&desc);
     now.gravel = DEM_MATERIAL_DESC;
     now.gravel.density = 2600;                                          /* kg/m3 */
     now.gravel.young = 1e8;                                             /* Pa; softened, for longer steps */
@@ -131,6 +132,8 @@ LESSON_API(lesson_begin) int lesson_begin(int scene, int grains, double friction
     now.gravel.friction = friction;
     now.gravel.restitution = restitution;
     now.gravel.rolling_friction = 0.3;                                  /* angular grains */
+    if (change) change(&desc, &now.gravel);
+    now.world = dem_world_create(&desc);
     now.material = dem_material_add(now.world, &now.gravel);
     now.moving = scene == DRUM ? drum_make() : scene == HOPPER ? hopper_make(own) : pile_make();
 
