@@ -1,23 +1,36 @@
-# sh tests/verdicts.sh DEM.o: laws as students write them, and the verdict of the exam (examples/exam.c) on each.
+# sh tests/verdicts.sh DEM.o: laws as students write them and those of the pages, and the verdict of the exam
+# (examples/exam.c) on each.
 # The last line is "N passed, N failed".
 object=$1; dir=build/out/verdicts; passed=0; failed=0
 mkdir -p $dir
 # verdict NAME "BODY" "FIELDS OF LAW" "LINES": BODY is that of the function; LINES are the beginnings of the lines that must
 # be found, in order, separated by commas; "" for none; "compile: TEXT" if the compiler must say TEXT
 verdict() {
-    name=$1
     { echo '#include <stdlib.h>'
       echo "static void law(const dem_contact *c, dem_real *memory, dem_contact_force *f) { (void)c; (void)memory; $2 }"
-      [ -z "$3" ] || echo "#define LAW {\"$name\", law, $3}"; } > $dir/$name.h
+      [ -z "$3" ] || echo "#define LAW {\"$1\", law, $3}"; } > $dir/$1.h
+    examine "$1" "$4"
+}
+# page_law PAGE FUNCTION "BEFORE" "FIELDS OF LAW" "LINES": the block of a page with this function; BEFORE stands above it; no
+# fields: the block has its row LAW
+page_law() {
+    name=$(basename "$1" .md)_$2
+    { echo "$3"; awk -v name="$2(const dem_contact" '/^```/ { if (c && index(text, name)) printf "%s", text; c = !c; text = ""; next }
+        c && !/include "dem.h"/ { text = text $0 "\n" }' "$1"
+      [ -z "$4" ] || echo "#define LAW {\"$name\", $2, $4}"; } > $dir/$name.h
+    examine "$name" "$5"
+}
+examine() {                                    # NAME LINES
+    name=$1
     if ! ${CC:-cc} ${CFLAGS:--O1} -w -I. -DLAW_FILE="\"$PWD/$dir/$name.h\"" examples/exam.c "$object" -o $dir/$name ${LINK:--lm} 2> $dir/$name.log; then
-        found=compile; case $4 in "compile: "*) grep -q "${4#compile: }" $dir/$name.log && found=$4;; esac; code=1
+        found=compile; case $2 in "compile: "*) grep -q "${2#compile: }" $dir/$name.log && found=$2;; esac; code=1
     else
         $dir/$name --out $dir > $dir/$name.txt 2> $dir/$name.log; code=$?
         found=$(sed -n 's/^FOUND   \(.*[^ ]\)   *.*/\1/p' $dir/$name.txt | cut -c1-38 | sed 's/ *$//' | grep -v '^quick' | paste -sd, -)
     fi
-    wanted=1; [ -n "$4" ] || wanted=0
-    if [ "$found" = "$4" ] && [ $code = $wanted ]; then passed=$((passed + 1)); echo "ok     $name"
-    else failed=$((failed + 1)); echo "FAILED $name: found \"$found\" with code $code, wanted \"$4\" with $wanted"; fi
+    wanted=1; [ -n "$2" ] || wanted=0
+    if [ "$found" = "$2" ] && [ $code = $wanted ]; then passed=$((passed + 1)); echo "ok     $name"
+    else failed=$((failed + 1)); echo "FAILED $name: found \"$found\" with code $code, wanted \"$2\" with $wanted"; fi
 }
 spring='f->normal = 1e4*c->overlap + 0.02*c->closing_speed;'
 shear='dem_vec3 s = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2])); dem_real size, most = 0.4*f->normal;
@@ -40,5 +53,16 @@ verdict crashes "$spring f->normal += *(dem_real *)(size_t)(c->overlap > 0);" "0
 verdict endless "while (c->overlap > 0) f->normal = 0;" "0, 0, 0, 1e4" "finite, whatever comes"
 verdict without_LAW "$spring" "" "compile: has no line"
 verdict unfinished "f->normal = 1e4*c->overlap" "0, 0, 0, 1e4" "compile: expected"
+# laws of the pages: each passes, but for the first try of own_law.md, whose page tells the line that it fails
+page_law README.md sticky "" "" ""
+page_law docs/laws.md my_law "" "" ""
+page_law docs/laws.md warm_law "static struct { dem_real conductance, capacity; } mine = {1, 800};" "&mine, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 1" ""
+page_law docs/laws.md wet_or_dry "static struct { dem_real tension, angle, volume; } mine = {0.073, 0.3, 4e-12};" "&mine, 5, 1, 0, DEM_NORMAL_HERTZ, -1, 2e-4" ""
+page_law docs/own_law.md skin_law "" "" "no energy from pressing while sheared"
+page_law docs/own_law.md rough_law "" "" ""
+page_law docs/extending.md spring_law "" "0, 3, 1, 1e4" ""
+page_law docs/extending.md sticky_law "" "0, 4, 1" ""
+page_law docs/how_to_more.md sticky "static double mine = 1e-3;" "&mine, 4, 1" ""
+page_law docs/how_to_more.md conduct "" "0, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 1" ""
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

@@ -89,7 +89,7 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     if (!(dt > 0)) return;
     memory[0] = s.x; memory[1] = s.y; memory[2] = s.z; memory[3] = b.x; memory[4] = b.y; memory[5] = b.z; memory[6] = twist;
 }
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static bond bond_mine = {DEM_R(1e8), DEM_R(2.5), DEM_R(5e-4), DEM_R(1e9), DEM_R(1e9), DEM_R(0.1)};
 #define LAW {"bond", bond_law, &bond_mine, 8, 2, 1.6e5, DEM_NORMAL_LINEAR, -1, 2e-4, 1, bond_make}
 #endif

@@ -53,7 +53,7 @@ static inline void capillary_law(const dem_contact *c, dem_real *memory, dem_con
 }
 
 /* make law LAW=examples/laws/capillary.h: water, bridges of a thousandth of a grain of 1 mm. */
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static capillary capillary_mine = {DEM_R(0.073), DEM_R(0.3), DEM_R(4e-12)};
 #define LAW {"capillary", capillary_law, &capillary_mine, 5, 1, 0, DEM_NORMAL_HERTZ, -1, 2e-4, 0}
 #endif

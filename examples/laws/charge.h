@@ -43,7 +43,7 @@ static inline void charge_law(const dem_contact *c, dem_real *memory, dem_contac
 }
 
 /* make law LAW=examples/laws/charge.h */
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static const dem_real charge_mine[] = {DEM_R(4.5)};
 static charge charge_here = {charge_mine, DEM_R(1e-7), 0};
 #define LAW {"charge", charge_law, &charge_here, 5, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 1}

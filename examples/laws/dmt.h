@@ -27,7 +27,7 @@ static inline void dmt_law(const dem_contact *c, dem_real *memory, dem_contact_f
 }
 
 /* make law LAW=examples/laws/dmt.h */
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static dmt dmt_mine = {DEM_R(0.05)};
 #define LAW {"dmt", dmt_law, &dmt_mine, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 0}
 #endif

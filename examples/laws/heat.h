@@ -49,7 +49,7 @@ static inline void heat_law(const dem_contact *c, dem_real *memory, dem_contact_
 }
 
 /* make law LAW=examples/laws/heat.h */
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static const dem_real heat_mine[] = {1};
 static heat heat_here = {heat_mine, heat_mine, 0, 0};
 #define LAW {"heat", heat_law, &heat_here, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 1}

@@ -81,7 +81,7 @@ static inline void jkr_law(const dem_contact *c, dem_real *memory, dem_contact_f
 }
 
 /* make law LAW=examples/laws/jkr.h: E* of 5.33e6 Pa, R* of 5e-4 m, w 0.05 J/m2. */
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static jkr jkr_mine = {DEM_R(0.05)};
 #define LAW {"jkr", jkr_law, &jkr_mine, 6, 1, 0, DEM_NORMAL_HERTZ, -1, 1e-5, 0}
 #endif

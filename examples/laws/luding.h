@@ -73,7 +73,7 @@ static inline double luding_restitution2(const luding *l, double m, double g) {
 }
 
 /* make law LAW=examples/laws/luding.h */
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static luding luding_mine = {DEM_R(1e4), DEM_R(5e4), DEM_R(5e3), DEM_R(4e-5), 0};
 #define LAW {"luding", luding_law, &luding_mine, 6, 1, 5e4, DEM_NORMAL_LINEAR, -1, 0, 0}
 #endif

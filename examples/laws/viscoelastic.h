@@ -40,7 +40,7 @@ static inline double viscoelastic_restitution(double A, double kn, double m, dou
 }
 
 /* make law LAW=examples/laws/viscoelastic.h: grains of 1 mm with e = 0.8 at 0.1 m/s. */
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static viscoelastic viscoelastic_mine = {DEM_R(4e-6)};
 #define LAW {"viscoelastic", viscoelastic_law, &viscoelastic_mine, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 0}
 #endif

@@ -53,7 +53,7 @@ static inline double walton_braun_restitution(const walton_braun *w, double m, d
 }
 
 /* make law LAW=examples/laws/walton_braun.h */
-#ifdef LAW_FILE
+#if defined LAW_FILE && __INCLUDE_LEVEL__ < 2     /* examined itself, not a law that includes it */
 static walton_braun walton_braun_mine = {DEM_R(1e4), 1, DEM_R(3e4), 0};
 #define LAW {"walton_braun", walton_braun_law, &walton_braun_mine, 6, 1, 5e4, DEM_NORMAL_LINEAR, -1, 0, 0}
 #endif

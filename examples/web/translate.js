@@ -78,10 +78,8 @@ function preprocess(text, file, macros, files, out = [], depth = 0) {
       const what = list[i].first ? { text: '' } : list[i++], part = rest(), name = part[0]?.text;
       if (what.text === 'ifdef' || what.text === 'ifndef')
         open.push({ at: word, on: macros.has(name) === (what.text === 'ifdef') });
-      else if (what.text === 'if') {
-        if (!/^(0|1)$/.test(name ?? '') || part.length > 1) fail(word, 'of #if only #if 0 and #if 1 are understood here: use #ifdef');
-        open.push({ at: word, on: name === '1' });
-      } else if (what.text === 'else' || what.text === 'endif') {
+      else if (what.text === 'if') open.push({ at: word, on: skipping() ? false : holds(word, part, macros, depth) });
+      else if (what.text === 'else' || what.text === 'endif') {
         if (!open.length) fail(word, `#${what.text} without #ifdef`);
         if (what.text === 'else') open.at(-1).on = !open.at(-1).on; else open.pop();
       } else if (skipping()) continue;
@@ -99,11 +97,8 @@ function preprocess(text, file, macros, files, out = [], depth = 0) {
       else if (what.text === 'include') {
         const named = part.map(p => p.text).join('').replace(/^["<]|[">]$/g, '');
         const base = named.replace(/.*\//, '');
-        if (files[base] !== undefined && depth < 20) {
-          const before = macros.get('LAW');                              // the row LAW of an included law is not ours
-          out.push(...preprocess(files[base], base, macros, files, [], depth + 1).slice(0, -1));
-          if (before) macros.set('LAW', before); else macros.delete('LAW');
-        } else if (!/^(dem|math|stdint|stddef|float|string|stdlib|stdio)\.h$/.test(base))
+        if (files[base] !== undefined && depth < 20) out.push(...preprocess(files[base], base, macros, files, [], depth + 1).slice(0, -1));
+        else if (!/^(dem|math|stdint|stddef|float|string|stdlib|stdio)\.h$/.test(base))
           fail(word, `"${named}" is not here: the lab has dem.h, math.h and ${Object.keys(files).join(', ') || 'no other file'}`);
       } else if (what.text === 'error') fail(word, '#error ' + part.map(p => p.text).join(' '));
       else if (what.text && what.text !== 'pragma' && what.text !== 'line')
@@ -114,6 +109,23 @@ function preprocess(text, file, macros, files, out = [], depth = 0) {
   if (open.length) fail(open.at(-1).at, 'this line has no #endif');
   out.push(list[i]);
   return out;
+}
+/* Whether the condition of #if holds. */
+function holds(word, part, macros, depth) {
+  const known = [], out = [];
+  for (let k = 0; k < part.length; k++) {
+    if (part[k].text !== 'defined') { known.push(part[k]); continue; }
+    const open = part[k + 1]?.text === '(', name = part[k + (open ? 2 : 1)];
+    known.push({ ...part[k], kind: 'number', text: String(+macros.has(name?.text)) });
+    k += open ? 3 : 1;
+  }
+  const level = { kind: 'number', text: String(depth + 1), line: word.line, column: word.column };
+  for (let k = 0; k < known.length;) k = expand(known, k, new Map([...macros, ['__INCLUDE_LEVEL__', { body: [level], arguments: null }]]), out, []);
+  const text = out.map(w => w.kind === 'word' ? '0' : w.text.replace(/[uUlL]+$/, '')).join(' ');
+  try {
+    if (!/^[-\d\sxXa-fA-F()!~<>=&|+*/%^?:]+$/.test(text)) throw 0;
+    return !!new Function(`return (${text});`)();
+  } catch { fail(word, 'this condition of #if cannot be computed: it has integers, defined and operators only'); }
 }
 /* Puts word i of a list, with its macro replaced, into out; returns the index of the next word. */
 function expand(list, i, macros, out, within) {
