@@ -61,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help help-all all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law verdicts lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help help-all all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law verdicts marks lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 # a target with `## TEXT` is in both lists, one with `### TEXT` in the long one; the short list ends TEXT at `;` or `:`
@@ -128,8 +128,11 @@ law: $(if $(LAW),build/dem.o,build/exam) ## examine a contact law and draw its c
 	@if [ -n "$(LAW)" ]; then $(COMPILE) -DLAW_FILE='"$(abspath $(LAW))"' examples/exam.c build/dem.o -o build/law $(LINK) && build/law; \
 	    else build/exam; fi
 
-verdicts: build/dem.o ### laws as students write them, and the verdict of the exam on each
+verdicts: build/dem.o build/01_bounce ### laws as students write them, and the verdict of the exam on each
 	@CC="$(CC)" LINK="$(LINK)" sh tests/verdicts.sh build/dem.o
+
+marks: build/dem.o $(if $(wildcard $(DIR)/answers.txt),$(LESSONS)) ### examine the laws and answers of a class: make marks DIR=folder writes folder/marks.csv; SEEDS=1
+	@CC="$(CC)" LINK="$(LINK)" SEEDS=$(SEEDS) sh examples/marks.sh "$(DIR)" build/dem.o
 
 lessons: $(LESSONS) ## build and run the twelve lessons, record replays in build/out/NAME, check their marks
 	@JOBS=$(JOBS) sh tests/lessons.sh $(LESSONS)

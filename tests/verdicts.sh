@@ -64,5 +64,36 @@ page_law docs/extending.md spring_law "" "0, 3, 1, 1e4" ""
 page_law docs/extending.md sticky_law "" "0, 4, 1" ""
 page_law docs/how_to_more.md sticky "static double mine = 1e-3;" "&mine, 4, 1" ""
 page_law docs/how_to_more.md conduct "" "0, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 1" ""
+# make marks: the same laws as the work of a class, and answers to exercises
+class=$dir/class; rm -rf $class; mkdir -p $class
+for student in $(sed -n 's/^verdict \([a-zA-Z_]*\) .*/\1/p' "$0"); do cp $dir/$student.h $class; done
+[ ! -x build/01_bounce ] || printf '# NAME LESSON EXERCISE VALUE\nAda 01_bounce 1 0.0565\nBob 01_bounce 1 3\nEve 01_bounce 3 1\nEve rm 1 1\n' > $class/answers.txt
+CC=${CC:-cc} LINK="$LINK" sh examples/marks.sh $class "$object" > $dir/marks.txt 2>&1
+cut -d, -f 1-5 $class/marks.csv > $dir/marks.csv
+{ cat <<END
+student,task,result,points,of
+beyond_memory,law,found,15,16
+by_slip,law,found,15,16
+crashes,law,stopped,0,16
+endless,law,stopped,0,16
+ends_program,law,stopped,0,16
+no_limit,law,found,15,16
+not_rotated,law,found,15,16
+overdamped,law,found,15,16
+sign,law,found,12,16
+spring_dashpot,law,passed,16,16
+unfinished,law,does not compile,0,16
+with_friction,law,passed,16,16
+without_LAW,law,does not compile,0,16
+END
+[ ! -f $class/answers.txt ] || cat <<END
+Ada,01_bounce 1,right,1,1
+Bob,01_bounce 1,wrong,0,1
+Eve,01_bounce 3,not understood,0,1
+Eve,rm 1,not understood,0,1
+END
+} > $dir/marks.right
+if cmp -s $dir/marks.right $dir/marks.csv; then passed=$((passed + 1)); echo "ok     marks of a class"
+else failed=$((failed + 1)); echo "FAILED marks of a class:"; diff $dir/marks.right $dir/marks.csv; fi
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]
