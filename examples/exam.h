@@ -499,7 +499,7 @@ static inline int exam_is_carried(const exam *e, char *found) {
     unsigned seed = 11;
     int n, k;
     for (n = 0; n < 4; n++) {
-        const double dt = 0.01*e->deep*e->radius/(1e-5*e->speed), half = 0.75/STEPS;
+        const double dt = 0.01*e->deep*e->radius/(1e-5*e->speed), half = 0.75/(int)STEPS;
         double a[3], size = 0;
         exam_path p, q;
         exam_go still, turn;

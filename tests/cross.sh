@@ -31,7 +31,7 @@ const { instance } = await WebAssembly.instantiate(readFileSync(process.argv[2])
 wasi.start(instance);
 X
 try "WebAssembly" "clang, lld, wasi-libc, libclang-rt-14-dev-wasm32, nodejs" "clang wasm-ld-14 node" \
-    "clang --target=wasm32-wasi --sysroot=/usr -std=c99 $flags tests/cross.c -o $dir/cross.wasm -lm" \
+    "clang --target=wasm32-wasi --sysroot=/usr -std=c99 $flags -Wl,-z,stack-size=262144 tests/cross.c -o $dir/cross.wasm -lm" \
     "node --no-warnings $dir/wasi.mjs $dir/cross.wasm"
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]
