@@ -37,7 +37,7 @@ hash := \#
 HAVE_PYTHON := $(if $(filter python-check,$(MAKECMDGOALS)),$(shell command -v $(PYTHON)))
 
 # ---- options that the compiler knows; tested only if something is to be compiled ----
-ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check coverage fuzz docs options python,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check coverage fuzz docs options python site,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp build/rooms build/obj)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -61,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help help-all all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law verdicts marks lessons web examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help help-all all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law verdicts marks lessons web site examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
 .DEFAULT_GOAL := help
 
 # a target with `## TEXT` is in both lists, one with `### TEXT` in the long one; the short list ends TEXT at `;` or `:`
@@ -245,6 +245,10 @@ python-check: $(if $(HAVE_PYTHON),$(LESSONS)) ### test examples/python: dem.py i
 
 web: ### build the browser lesson and the law lab (dem.h in WebAssembly) into examples/web/pages, and both as programs
 	@sh examples/web/make.sh build/web && mkdir -p examples/web/pages && cp build/web/lesson.html build/web/lab.html examples/web/pages
+
+site: ### write the documentation as a static site into build/site: search, reference, gallery; check its links and docs/find.md
+	@sh tests/find.sh
+	@command -v $(PYTHON) >/dev/null || { echo "SKIP: $(PYTHON) not found (Debian packages python3-sphinx, python3-myst-parser, furo)"; exit; }; $(PYTHON) docs/site/build.py build/site
 
 viewer: ### copy examples/replay/viewer.html into src/replay/viewer.h
 	@mkdir -p build && awk -f tests/viewer.awk examples/replay/viewer.html src/replay/viewer.h > build/viewer.h && cp build/viewer.h src/replay/viewer.h
