@@ -65,7 +65,7 @@ async function lab_engine(module, header, files) {
     if (!unit.LAW) return wrong('the text has no line #define LAW {"name", function, numbers, reals of memory, vectors, stiffness}, or ' +
       'this line stands behind an #ifdef that is not LAW_FILE');
     if (unit.size > dem.lab_zone(2) - dem.lab_zone(1)) return wrong('the law has too many numbers of its own');
-    law = { lines, own: new Set(unit.functions), whole, run: new Function(unit.code)()(memory, stop, calls, stack) };
+    law = { lines, whole, run: new Function(unit.code)()(memory, stop, calls, stack) };
     guarded(() => law.run.init());
     if (stopped) return stopped;
     const words = new Int32Array(memory.buffer, unit.LAW, 14), real = new DataView(memory.buffer, unit.LAW);  // as lab_row.h

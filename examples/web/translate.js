@@ -3,7 +3,7 @@
    const header = translate(text of dem.h's public part, { calls });              // once
    const law = translate(text of my_law.h, { header, files, data });              // at every change
    law.error          null, or { line, column, text }: the first thing that is not C, or not in this subset
-   law.code           JavaScript: `new Function(law.code)()(memory, stop, calls)` gives { call, init, at }
+   law.code           JavaScript: `new Function(law.code)()(memory, stop, calls)` gives { init, call }
    law.LAW            where the row LAW stands in memory, or 0
 
    Structs, arrays and variables whose address is taken live in the memory of the WebAssembly module, laid out as C lays
@@ -596,7 +596,6 @@ class Translator {
     const frame = aligned(this.frame, 8);
     const local = [...this.variables, ...Array.from({ length: this.temporaries }, (_, k) => 't' + k)];
     const falls = this.result.kind === 'void' || gives ? '' : ` return ${isReal(this.result) ? 'NaN' : '0'};`;
-    this.framed = frame;
     const enter = `if (--fuel < 0) stop('endless', ${d.name.line}, '${name}');` +
       (frame ? ` const fp = sp; if ((sp += ${frame}) > top) stop('deep', ${d.name.line}, '${name}');` : '');
     this.functions.set(name, { mine: true, uses: this.uses,
@@ -1164,16 +1163,13 @@ return (source, setting = {}) => {
     if (!setting.header) return { ...result, names: t.scopes[0], tags: t.tags[0], functions: t.functions, formulas: t.formulas, macros, calls: setting.calls ?? [] };
     for (const [name, f] of t.functions) if (f.mine && !setting.header.functions.has(name)) emit(name);
     t.table.forEach(emit);
-    result.names = [...t.scopes[0].keys()].filter(name => !setting.header.names.has(name));
-    result.uses = [...emitted];
-    result.functions = [...t.functions.keys()].filter(name => !setting.header.functions.has(name));
     result.LAW = macros.has('LAW') ? t.scopes[0].get('lab_law').at.offset : 0;
     result.size = t.used;
     result.table = t.table;
     result.code = `${FRAME}${MATH_CODE}\n${out.join('\n')}\nconst table = [null, ${t.table.map(n => '$' + n).join(', ')}];\n` +
       `const init = () => { look(); fuel = 1e6; sp = stack.at; top = stack.end;\n${t.start.join('\n')}\n};\n` +
       `const call = (k, a, b, c) => { if (!U8.length) look(); fuel = 100000; sp = stack.at; table[k](a, b, c); };\n` +
-      `return { init, call, named: name => table.indexOf({ ${out.map(f => /^function (\$\w+)/.exec(f)[1]).map(n => `${n}`).join(', ')} }['$' + name]) };\n};`;
+      `return { init, call };\n};`;
   } catch (fault) {
     if (!(fault instanceof Fault)) throw fault;
     result.error = { line: fault.at.line, column: fault.at.column, file: fault.at.file ?? '', text: fault.message };
