@@ -63,8 +63,10 @@
      contact/ - contacts and their forces, by shapes
        >>touch             narrow phase: candidates to contacts, geometry only
        >>respond           stages from rows of contacts of spheres to forces and torques
-       >>pairs             user-defined laws; the loop over the pruned neighbour list
+       >>choose            which stages a scene needs; user-defined laws
        >>noted             notes of the contacts of a step, for events
+       >>finish            what contacts give to bodies, walls, ledger, cell and events
+       >>pairs             lone spheres: the loop over the pruned neighbour list
        >>polyhedra         overlap of two polyhedra, or of one and a wall
        >>gaps              distance between polyhedra, and their contact points
        >>on-walls          contacts of spheres and ellipsoids with walls
@@ -78,7 +80,8 @@
        >>meet-tables       functions by shape and by wall; contact geometry on a wall
        >>continued         which contact of the step before a persistent contact continues
        >>kept              contacts with walls and of other shapes: persistent contacts
-       >>kept-respond      persistent contacts to forces and torques on both bodies
+       >>points            contacts at points of bodies to forces and torques
+       >>kept-respond      persistent contacts: coefficients and histories
        >>members           contacts of spheres that may be members of clusters
      impulse/ - rigid grains: constraints, joints, solvers
        >>impulses          rigid grains: the contacts and constraints of a step
@@ -5186,8 +5189,8 @@ typedef struct demi_bodies {
     dem_real *centre;              /* x 4: member spheres: centre relative to the body's centre, and
                                       radius, m; a lone sphere is its own member */
     dem_real *ball;                /* x 4: effects.clustered: the same, with centres in space */
-    dem_real *yield;               /* x 6: likewise, of bodies: inverse inertia in space, xx yy zz
-                                      xy xz yz, 1/(kg m2); 0: fixed, or a lone sphere */
+    dem_real *yield;               /* x 6: with springs: inverse inertia of bodies in space, xx yy
+                                      zz xy xz yz, 1/(kg m2); 0: fixed, or a lone sphere */
     int32_t *centre_start;         /* first member sphere of each body */
     int centres_valid;               /* they fit the bodies and their orientations */
     uint32_t *slot;                /* of each body */
@@ -5574,9 +5577,7 @@ struct dem_world {
     demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
     int merging_most;
     struct demi_solver solver;     /* >>impulses */
-    demi_events events;            /* >>events; noted: >>noted, >>kept-respond, >>impulses-told */
-    /* >>respond */
-    void (*kernel)(dem_world *w, int domain);
+    demi_events events;            /* >>events; noted: >>noted, >>impulses-told */
     demi_lookers look;             /* >>step, >>output, >>replay */
 };
 /* Marks that user-defined functions run: calls that change the world then fail (demi_null) until
@@ -8098,7 +8099,8 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
    The spheres of which bodies consist: members of clusters, and lone spheres, each the only member
    of its body. They have two forms: as seen from the body's centre (bodies.centre), rotated with
    the body in each step; and, where forces need it (effects.clustered), as points in space
-   (bodies.ball), with the inverse inertia of their bodies (bodies.yield). This part owns all three.
+   (bodies.ball). This part owns both, and the inverse inertia of bodies in space (bodies.yield),
+   which forces at points of bodies need.
    --------------------------------------------------------------------------------------------- */
 
 /* A tile of bodies in their orientations, as a structure of arrays. */
@@ -8183,9 +8185,9 @@ static int demi_centres_lay(dem_world *w) {
     }
     start[i] = n;
     if (!DEMI_GROW(w, w->bodies.centre, 4*((size_t)n + 1)) ||
-        (w->effects.clustered && (!DEMI_GROW(w, w->bodies.ball, 4*((size_t)n + 1)) ||
-                                  !DEMI_GROW(w, w->bodies.yield, 6*(size_t)w->bodies.count + 1))))
-        return 0;
+        !DEMI_GROW(w, w->bodies.yield, 6*(size_t)w->bodies.count + 1) ||
+        (w->effects.clustered && !DEMI_GROW(w, w->bodies.ball, 4*((size_t)n + 1)))) return 0;
+    memset(w->bodies.yield, 0, 6*(size_t)w->bodies.count*sizeof(dem_real));
     w->bodies.centres_valid = 1;
     for (i = 0; i < w->bodies.count; i++) {
         dem_real *lone = w->bodies.centre + 4*start[i];
@@ -8202,11 +8204,13 @@ static int demi_centres_lay(dem_world *w) {
     return 1;
 }
 /* Computes the inverse inertia in space (bodies.yield) of bodies begin .. end - 1, at most a
-   tile. */
+   tile. That of spheres is 0 from demi_centres_lay on. */
 static void demi_yields_turn(const dem_world *w, int begin, int end) {
     const int count = end - begin, full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     demi_frames f;
-    int l, e;
+    int l, e, shaped = 0;
+    for (l = begin; l < end; l++) shaped |= demi_shape_of(w, l) != 0;
+    if (!shaped) return;
     for (l = 0; l < full; l++) {
         const int i = begin + DEMI_MIN(l, count - 1);
         const int turns = demi_shape_of(w, i) && w->bodies.inv_mass[i] > 0;
@@ -8219,15 +8223,15 @@ static void demi_yields_turn(const dem_world *w, int begin, int end) {
     for (l = 0; l < count; l++)
         for (e = 0; e < 6; e++) w->bodies.yield[6*(begin + l) + e] = f.W[e][l];
 }
-/* Sets the spheres of bodies begin .. end - 1 in space, and what their contacts need of the bodies
-   (bodies.ball, bodies.yield). */
+/* Sets what contacts need of bodies begin .. end - 1 in their present orientations: bodies.yield
+   and, with effects.clustered, the spheres in space. */
 static void demi_balls_place(const dem_world *w, int begin, int end) {
     int i, k, e;
     for (i = begin; i < end; i++) {
         const dem_real *x = w->bodies.pos + 4*i;
         const int first = w->bodies.centre_start[i], last = w->bodies.centre_start[i + 1];
         if ((i - begin) % DEMI_TILE == 0) demi_yields_turn(w, i, DEMI_MIN(i + DEMI_TILE, end));
-        for (k = first; k < last; k++) {
+        for (k = first; k < last && w->effects.clustered; k++) {
             const dem_real *arm = w->bodies.centre + 4*k;
             dem_real *ball = w->bodies.ball + 4*k;
             DEMI_UNROLL
@@ -18259,7 +18263,7 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
    is cheaper than three gathers). Then stages run over the rows, one after the other: contact
    detection, relative motion, normal law, friction, rolling, force and torques. They work on vector
    groups of constant length, which compilers vectorise at -O2 too. The most common combinations of
-   laws have one stage for all laws, which avoids the rows in between. >>pairs chooses the stages.
+   laws have one stage for all laws, which avoids the rows in between. >>choose chooses the stages.
    --------------------------------------------------------------------------------------------- */
 /* Sums and differences are of the two bodies of a pair: a + b and a - b. */
 /* Rows that are filled one by one. gcc gets x and y side by side, which one instruction moves
@@ -18298,16 +18302,16 @@ typedef struct demi_tile {
     int row;                       /* the row of species_coef in all of coef; -1: none */
     dem_real gains[DEMI_ROOM][2*DEM_BODY_REALS];   /* 1/s, of user-defined numbers */
 } demi_tile;
-/* Up to a tile of consecutive entries of the pruned neighbour list. */
+/* Up to a tile of contacts: consecutive entries of the pruned list, or those of >>points. */
 typedef struct demi_span {
-    const int32_t *a, *b, *k;      /* bodies; candidate (with a later work group: its slot) */
+    const int32_t *a, *b;          /* bodies; of >>points: b < 0 is wall -1 - b */
+    const int32_t *k;              /* candidate: slot for a b of a later work group; of >>points: or
+                                      -1 */
     const unsigned char *image;
     dem_real *memory;              /* column e of pair q: memory[e*stride + q] */
     const int32_t *row;            /* of the table of species, or null */
     const dem_real *coef;          /* columns likewise; row and coef are null if all are alike */
-    const int32_t *ball;           /* of clusters: spheres of a, else null */
-    const dem_real *share;         /* of clusters: weights of the pairs */
-    const demi_rows *arm;          /* m, of clusters: centres of the spheres of a, those of b */
+    struct demi_points *points;    /* the tile of >>points; null: lone spheres */
     size_t stride;
     int count;
 } demi_span;
@@ -18323,9 +18327,7 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     s.memory = near->memory ? near->memory + (size_t)d*(size_t)w->memory_stride*stride + p : 0;
     s.row = w->effects.uniform || demi_many_species(w) ? 0 : near->row + at;
     s.coef = demi_many_species(w) ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
-    s.ball = 0;
-    s.share = 0;
-    s.arm = 0;
+    s.points = 0;
     s.stride = stride;
     s.count = count;
     return s;
@@ -18376,6 +18378,11 @@ DEM_INLINE void demi_rows_shifted(demi_rows *DEMI_RESTRICT rows, size_t q, const
     DEMI_XY(rows, 1, q) = y;
     rows->z[q] = z;
 }
+DEM_INLINE void demi_rows_put(demi_rows *DEMI_RESTRICT rows, int q, dem_vec3 v) {
+    DEMI_XY(rows, 0, q) = v.x;
+    DEMI_XY(rows, 1, q) = v.y;
+    rows->z[q] = v.z;
+}
 DEM_INLINE dem_vec3 demi_rows_at(const demi_rows *rows, int q) {
     return demi_v(DEMI_XY(rows, 0, q), DEMI_XY(rows, 1, q), rows->z[q]);
 }
@@ -18401,7 +18408,7 @@ typedef void (*demi_stage)(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
 enum { DEMI_STAGES = 7 };
 struct demi_run {
     const dem_world *w;
-    const demi_span *span;         /* the pairs; null: persistent contacts */
+    const demi_span *span;         /* the contacts */
     int alike, ledger, keep;       /* are both bodies alike? keep: reals of history */
     int usual;                     /* demi_laws_usual */
     int turning, parting;          /* are spins, differences of spins needed? */
@@ -18410,6 +18417,37 @@ struct demi_run {
     demi_same same;
     demi_stage stage[DEMI_STAGES]; /* in this order, up to the first null */
 };
+/* A tile of contacts at points of bodies (>>points): of member spheres, or persistent ones. It adds
+   to the rows above what lone spheres do not need. */
+typedef struct demi_points {
+    demi_rows arm[2], mid[2];      /* m, from both centres to the contact: now; at mid-step */
+    demi_rows spin[2], spun[2];    /* rad/s, of a and b: now; over the last step */
+    demi_rows outset;              /* m: see demi_kept_more */
+    dem_real couple[DEMI_ROOM];    /* m: likewise */
+    dem_real share[DEMI_ROOM], grip[DEMI_ROOM];            /* weights: of damping, of friction */
+    dem_real lift[DEMI_ROOM];      /* weight of the elastic force, minus share */
+    dem_real still[DEMI_ROOM];     /* N, elastic force of those that are lifted */
+    dem_real slope[DEMI_ROOM];     /* change of the overlap per distance */
+    dem_real base[DEMI_COEFS][DEMI_ROOM], root[2][DEMI_ROOM];      /* coefficients without slope */
+    dem_real known[DEMI_ROOM];     /* kg, m*; 0: depends on the following */
+    demi_rows felt[2];             /* m, arms for effective masses */
+    dem_real inv[DEMI_ROOM], yield[2][6][DEMI_ROOM];       /* 1/kg, of both; as in demi_bodies */
+    demi_tile rows;
+    /* the remaining fields are last, so that all rows begin on cache lines */
+    int32_t a[DEMI_TILE], b[DEMI_TILE], k[DEMI_TILE];      /* see demi_span */
+    demi_kept *contact[DEMI_TILE]; /* null: of two member spheres */
+    dem_real *home[DEMI_TILE];     /* where the history goes: real e to home[e*hop] */
+    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* m, point on a wall; m/s, its velocity */
+    dem_vec3 aside[DEMI_TILE], side[2][DEMI_TILE]; /* see demi_kept_more; m, arms of a and b where
+                                                      it acts */
+    unsigned char raised[DEMI_TILE];               /* 1: lifted; 2: likewise, with `aside` */
+    const demi_coefs_row *filled[DEMI_TILE];       /* what base and root contain; null: unknown */
+    demi_span span;
+    demi_run run, laws;            /* all stages; those of the laws only */
+    size_t hop;
+    int count, ready;              /* contacts; rows that have ever been filled */
+    int turns, weighted, lifted;   /* is any m* unknown? any weight not 1? any lifted? */
+} demi_points;
 
 /* Copies the data of bodies that the stages need into the rows. */
 DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t, int uniform,
@@ -18749,36 +18787,40 @@ DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
 #endif
 
 /* ---------------------------------------------------------------------------------------------
-   >>pairs
-   Contacts of spheres to forces and torques: user-defined laws, the choice of stages, and the loop
-   over the pruned neighbour list. A scene runs only the stages that it needs, so any combination of
-   laws costs the sum of its parts. The forces of a tile are added to both bodies. A pair with a
-   body of a later work group stores that force in a slot; the other work group adds it once all are
-   done, in list order. The order of every sum is thus independent of the number of threads.
+   >>choose
+   Which stages a scene needs: user-defined laws as stages, and the choice of stages for the laws in
+   force. A scene runs only these, so any combination of laws costs the sum of its parts.
    --------------------------------------------------------------------------------------------- */
 
-/* Fills in `who` for a law that has desc.law_who set, for bodies a and b; b < 0: wall -1 - b, of
-   which the grains have the radius rb. arm: m, from a's centre to the contact point. */
+/* Fills in `who` for a law that has desc.law_who set, for bodies a and b; b < 0: wall -1 - b. arm:
+   m, from a's centre to the contact point. */
 static void demi_who_fill(const dem_world *w, int a, int b, dem_real ra, dem_real rb, dem_vec3 arm,
                           dem_real *rates, dem_contact_who *who) {
     const demi_periods periods = demi_periods_of(w);
+    demi_who_clear(who);
     who->a = dem_body_id_get(w, a);
     who->radius_a = ra;
     who->mass_a = w->bodies.mass[a];
-    who->radius_b = rb;
+    who->radius_b = b >= 0 ? rb
+        : demi_wall_is(&w->walls[-1 - b], DEMI_BALLS) ? w->walls[-1 - b].radius : 0;
     if (b >= 0) who->b = dem_body_id_get(w, b);
     if (b >= 0) who->mass_b = w->bodies.mass[b];
     who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), arm));
     who->time = w->clock.time;
     demi_who_reals(w, a, DEMI_MAX(b, -1), b < 0 ? -1 - b : 0, rates, who);
 }
-/* The same for pair q. */
+/* The same for row q. */
 static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
                                      dem_real *rates, dem_contact *c) {
     const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
-    const dem_vec3 arm = demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb));
-    demi_who_fill(r->w, r->span->a[q], r->span->b[q], ra, rb, r->span->ball ? demi_add(arm,
-        demi_at(r->w->bodies.centre + 4*r->span->ball[q])) : arm, rates, &c->who);
+    demi_who_fill(r->w, r->span->a[q], r->span->b[q], ra, rb,
+                  r->span->points ? demi_rows_at(&r->span->points->arm[0], q)
+                  : demi_scale(demi_rows_at(&t->gap, q), ra/(ra + rb)), rates, &c->who);
+}
+/* Material of side b of row q: 1 + index. */
+DEM_INLINE int32_t demi_span_material(const dem_world *w, const demi_span *span, int q) {
+    const int b = span->b[q];
+    return b >= 0 ? w->bodies.material[b] : w->walls[-1 - b].material + 1;
 }
 /* Fills a dem_contact from row q for a user-defined law. */
 DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
@@ -18787,11 +18829,12 @@ DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, con
     demi_tile_contact(t, same, q, c);
     c->range = r->ranged ? demi_tile_range(t, same, q, 0) : 0;
     c->material_a = w->bodies.material[r->span->a[q]];
-    c->material_b = w->bodies.material[r->span->b[q]];
+    c->material_b = demi_span_material(w, r->span, q);
+    if (r->span->b[q] < 0) c->wall = w->walls[-1 - r->span->b[q]].id;
     c->user = w->desc.law_user;
     if (who) demi_tile_who(t, r, q, t->gains[q], c);
 }
-/* Calls the user-defined law for pair q. */
+/* Calls the user-defined law for row q. */
 DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
                              int q, dem_contact *c) {
     const dem_world *w = r->w;
@@ -18812,7 +18855,7 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, cons
 }
 #define DEMI_COEF_COLUMN(PROPERTY, COEFFICIENT, UNIT) \
     c.COEFFICIENT = t->coef[DEMI_COEF_##COEFFICIENT];
-/* Calls a user-defined law pair by pair, and only for pairs in contact or within its range. */
+/* Calls a user-defined law row by row, and only for those in contact or within its range. */
 static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
     const demi_same same = r->same;
     dem_contact c;
@@ -18867,7 +18910,7 @@ static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, i
     DEMI_ROWS_END
     for (e = 0; e < full; e++) {
         material[0][e] = w->bodies.material[r->span->a[e]];
-        material[1][e] = w->bodies.material[r->span->b[e]];
+        material[1][e] = demi_span_material(w, r->span, e);
         range[e] = r->ranged ? demi_tile_range(t, &same, e, 0) : 0;
     }
     c.count = full;
@@ -18935,6 +18978,11 @@ static demi_stage demi_whole_stage(const dem_world *w, int alike) {
 #endif
     return 0;
 }
+/* How the stages evaluate the laws, in reports. */
+static const char *demi_stages_name(const dem_world *w) {
+    if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
+    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
+}
 /* Appends the stages of the scene's laws from stage k on. Returns the number of stages then. */
 static int demi_run_laws(const dem_world *w, demi_run *r, int k) {
     const demi_stage_row *normal = &demi_normal_stages[w->normal];
@@ -18990,274 +19038,6 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     r.stage[k] = demi_answer_choose(&r, demi_laws_roll(w));
     return r;
 }
-/* Fills rows that no stage sets: coefficients that are the same for all pairs, and zero
-   friction. */
-static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
-    const demi_domain *domain = &w->domains[d];
-    const int first = demi_near_first(domain);
-    dem_real coef[DEMI_TILE_COLUMNS];
-    int e, q;
-    t->row = -1;
-    for (q = 0; q < DEMI_TILE && !demi_laws_precise(w); q++)
-        t->slope[0][q] = t->slope[1][q] = t->kt[1][q] = (dem_real)NAN;
-    if (first < domain->near_end) {
-        const demi_span one = demi_span_of(w, d, first, 1);
-        demi_span_coefs(w, &one, 0, coef);
-        if (!demi_laws_sized(w)) coef[DEMI_R_EFF] = coef[DEMI_M_EFF] = (dem_real)NAN;
-        for (e = 0; e < DEMI_TILE_COLUMNS; e++)
-            for (q = 0; q < DEMI_TILE; q++) t->coef[e][q] = coef[e];
-    }
-    memset(t->part, 0, sizeof t->part);
-    memset(t->tangent, 0, sizeof t->tangent);
-    memset(t->memory[DEMI_MEMORY], 0, sizeof t->memory[0]);
-}
-/* Copies the coefficients of a tile's pairs, except those that never vary (species_vary), which
-   demi_tile_begin has set. Returns the run to use: run[0] for pairs of different bodies, run[1] for
-   pairs of identical ones, which needs no radii, no differences of spins and one torque for both.
-   If all pairs share one row of the table, later tiles with the same row skip the copy. Such a row
-   is therefore copied to the end of the tile, since those tiles may be longer. */
-static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int full,
-                                 demi_tile *DEMI_RESTRICT t, demi_run *run) {
-    const int32_t *DEMI_RESTRICT row = span->row;
-    const int n = w->effects.species_count;
-    int e, q, differ = 0, same;
-    if (w->effects.uniform) return run + 1;
-    for (q = 0; q < full && row; q++) differ |= row[q]^row[0];
-    same = row && !differ;
-    for (e = 0; e < DEMI_TILE_COLUMNS && !(same && t->row == row[0]); e++) {
-        const dem_real *DEMI_RESTRICT table = w->species_coef + e;
-        if (!(w->species_vary >> e & 1)) continue;
-        if (!row) demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, full);
-        else if (differ) for (q = 0; q < full; q++) t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[q]];
-        else for (q = 0; q < DEMI_TILE; q++)    /* all of it: the next tile may be longer */
-            t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[0]];
-    }
-    t->row = same ? row[0] : -1;
-    if (!same || row[0]%(n + 1)) return run;    /* species k with k: row k*n + k */
-    run[1].same.radius = w->effects.species[row[0]/(n + 1)].radius;
-    run[1].same.inv_radius = 1/run[1].same.radius;
-    return run + 1;
-}
-
-/* Corrects the energy that dashpots took to the velocities of the actual path. */
-static void demi_tile_late(const dem_world *w, const demi_span *span, int full,
-                           demi_tile *DEMI_RESTRICT t) {
-    const dem_real *DEMI_RESTRICT late = w->bodies.late;
-    int n;
-    for (n = 0; n < span->count; n++)
-        demi_rows_minus(&t->late, (size_t)n, DEMI_AT(late, span->a[n]), DEMI_AT(late, span->b[n]));
-    DEMI_ROWS(full)
-        t->part[0][q] *= 1 + demi_late_share(demi_rows_at(&t->late, q), demi_row(t->normal, q),
-                                             t->closing[q]);
-    DEMI_ROWS_END
-}
-/* Adds the energies of a tile's contacts to the ledger, in list order. */
-static void demi_tile_book(const demi_tile *DEMI_RESTRICT t, int count, double *energy) {
-    int q;
-    for (q = 0; q < count; q++) {
-        energy[DEMI_E_DASHPOT] += (double)(t->part[0][q] + t->part[6][q]);
-        energy[DEMI_E_ELASTIC] += (double)t->part[1][q];
-        energy[DEMI_E_SHEAR_WORK] += (double)t->part[2][q];
-        energy[DEMI_E_SLIDE] += (double)t->part[3][q];
-        energy[DEMI_E_SHEAR_STORED] += (double)t->part[4][q];
-        energy[DEMI_E_ROLL] += (double)t->part[5][q];
-    }
-}
-/* A cell that deforms: adds the velocity difference of its flow to a row of relative velocities.
-   branch: m, from the centre of body a to that of b. */
-DEM_INLINE void demi_rows_flow(const dem_world *w, demi_rows *rate, int q, dem_vec3 branch) {
-    const dem_vec3 flow = demi_cell_flow(w, branch);
-    DEMI_XY(rate, 0, q) -= flow.x;
-    DEMI_XY(rate, 1, q) -= flow.y;
-    rate->z[q] -= flow.z;
-}
-/* The same for all pairs of a tile. */
-static DEMI_APART void demi_tile_flow(const demi_run *r, int count, demi_tile *t) {
-    int q;
-    for (q = 0; q < count; q++) {
-        demi_rows_flow(r->w, &t->rate, q, demi_rows_at(&t->gap, q));
-        if (r->following) demi_rows_flow(r->w, &t->gone, q, demi_rows_at(&t->gap, q));
-    }
-}
-/* Evaluates a tile with one of two runs, and returns that run. */
-static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
-                                   demi_tile *DEMI_RESTRICT t) {
-    const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    demi_run *r = demi_tile_coefs(w, span, full, t, run);
-    int q, k;
-    r->span = span;
-    for (q = 0; q < r->keep; q++)
-        demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
-    demi_tile_fetch(r, full, t);
-    if (w->cell.on) demi_tile_flow(r, full, t);
-    for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
-    for (q = 0; q < r->keep; q++) {             /* `count` only: pairs of >>members may follow */
-        dem_real *memory = span->memory + (size_t)q*span->stride;
-        demi_row_copy(memory, t->memory[q], span->count/DEMI_LANES*DEMI_LANES);
-        for (k = span->count/DEMI_LANES*DEMI_LANES; k < span->count; k++)
-            memory[k] = t->memory[q][k];
-    }
-    return r;
-}
-
-/* Adds the contacts of a tile to the number and the largest relative overlap of its work group.
-   ranged: contacts also act across a gap, and those that do so do not count. */
-static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, int ranged,
-                            demi_domain *sum) {
-    dem_real deepest = 0, contacts = 0;
-    int q;
-    for (q = 0; q < count; q++) {
-        deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
-        contacts += t->touch[q];
-    }
-    for (q = 0; q < count && ranged; q++) contacts -= t->touch[q] > 0 && !(t->overlap[q] > 0);
-    sum->contacts += (int)contacts;
-    sum->overlap = DEMI_MAX(sum->overlap, (double)deepest);
-}
-DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) {
-    x += sum[0]; y += sum[1]; z += sum[2];
-    sum[0] = x; sum[1] = y; sum[2] = z;
-}
-DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
-    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
-}
-/* Adds a tile's forces to both bodies. */
-DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
-                             dem_real *DEMI_RESTRICT force, dem_real *DEMI_RESTRICT torque,
-                             int turning, int second) {
-    const int32_t *DEMI_RESTRICT la = span->a, *DEMI_RESTRICT lb = span->b;
-    const int count = span->count;
-    int n;
-    for (n = 0; n < count; n++) {
-        const size_t q = (size_t)n;
-        const int32_t i = la[q], j = lb[q];
-        const dem_real fx = t->force[0][q], fy = t->force[1][q], fz = t->force[2][q];
-        demi_sum_add(DEMI_AT(force, i), fx, fy, fz);
-        demi_sum_add(DEMI_AT(force, j), -fx, -fy, -fz);
-        if (!turning) continue;
-        demi_sum_add(DEMI_AT(torque, i), t->torque[0][0][q], t->torque[0][1][q],
-                     t->torque[0][2][q]);
-        demi_sum_add(DEMI_AT(torque, j), t->torque[second][0][q], t->torque[second][1][q],
-                     t->torque[second][2][q]);
-    }
-}
-/* Adds a tile's forces to both bodies in list order, which decides the bits of the sums. */
-static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
-                              const demi_run *r, dem_real *DEMI_RESTRICT force,
-                              dem_real *DEMI_RESTRICT torque) {
-    if (r->parting || span->ball) demi_scatter(t, span, force, torque, 1, 1);
-    else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
-    else demi_scatter(t, span, force, torque, 0, 0);
-}
-/* The same for pairs with later work groups: forces on b stay in slots `out`, six reals for each
-   candidate. Several pairs of clusters add to one slot, which was cleared before. */
-static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
-                               const demi_run *r, dem_real *DEMI_RESTRICT force,
-                               dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT slots) {
-    const int turning = r->turning || span->ball, second = r->parting || span->ball;
-    int q;
-    for (q = 0; q < span->count; q++) {
-        dem_real *out = slots + 6*(size_t)span->k[q];
-        const dem_vec3 f = demi_row(t->force, q);
-        demi_force_add(DEMI_AT(force, span->a[q]), f);
-        if (turning) demi_force_add(DEMI_AT(torque, span->a[q]), demi_row(t->torque[0], q));
-        if (span->ball) {
-            demi_force_add(out, demi_scale(f, -1));
-            demi_force_add(out + 3, demi_row(t->torque[1], q));
-            continue;
-        }
-        out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
-        if (turning) demi_put(out + 3, demi_row(t->torque[second], q));
-    }
-}
-
-/* Adds the rates that a law returned for user-defined numbers to both bodies. out: the slots for
-   those of b, if b is of a later work group. */
-static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span, dem_world *w,
-                                       dem_real *out) {
-    const int n = w->bodies.real_count;
-    int q, k;
-    for (q = 0; q < span->count; q++) {
-        dem_real *a = w->bodies.rates + n*span->a[q];
-        dem_real *b = out ? out + (size_t)n*(size_t)span->k[q] : w->bodies.rates + n*span->b[q];
-        const int touch = t->touch[q] > 0, sets = out && !span->ball;
-        const dem_real share = span->share ? span->share[q] : 1;
-        for (k = 0; k < n; k++) {
-            if (touch) a[k] += share*t->gains[q][k];
-            if (sets) b[k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
-            else if (touch) b[k] += share*t->gains[q][DEM_BODY_REALS + k];
-        }
-    }
-}
-
-/* Adds the contact of row q, by its share, to the sums of a cell that deforms. */
-DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, dem_vec3 branch,
-                               dem_real share, double *sum) {
-    const dem_vec3 f = demi_v(t->force[0][q], t->force[1][q], t->force[2][q]);
-    demi_virial_add(sum, f, branch);
-    if (!demi_cell_stiffens(w) || !(t->overlap[q] > 0)) return;
-    demi_cell_stiffen(w, sum, demi_v(t->normal[0][q], t->normal[1][q], t->normal[2][q]), branch,
-                      t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
-                      (double)t->overlap[q], (double)share);
-}
-/* Vector of row q from the centre of body a to that of b, m. */
-DEM_INLINE dem_vec3 demi_tile_branch(const demi_tile *t, const demi_span *span, int q) {
-    const dem_vec3 gap = demi_rows_at(&t->gap, q);
-    return !span->arm ? gap : demi_add(gap, demi_sub(demi_rows_at(&span->arm[0], q),
-                                                     demi_rows_at(&span->arm[1], q)));
-}
-/* Called for every tile when its forces are known. */
-typedef void (*demi_tile_fn)(dem_world *w, int d, demi_tile *t, const demi_span *span,
-                             const demi_run *r);
-/* Adds what the contacts of a tile give to bodies, or to the slots of bodies of later work groups
-   (send), to the cell, the ledger and the counts of the work group. note: or null. */
-DEM_INLINE void demi_tile_finish(dem_world *w, int d, demi_tile *t, const demi_span *span,
-                                 const demi_run *r, int send, demi_tile_fn note) {
-    const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    demi_domain *domain = &w->domains[d];
-    int q;
-    if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
-    if (r->ledger) demi_tile_book(t, span->count, domain->energy);
-    demi_tile_tally(t, span->count, r->ranged, domain);
-    if (!send) demi_tile_scatter(t, span, r, w->bodies.force, w->bodies.torque);
-    else demi_tile_send(t, span, r, w->bodies.force, w->bodies.torque, w->cross_force);
-    if (demi_exchanges(w)) demi_tile_rates(t, span, w, send ? w->cross_rate : 0);
-    for (q = 0; q < span->count && w->cell.on; q++)
-        if (t->touch[q] > 0)
-            demi_tile_cell(w, t, q, demi_tile_branch(t, span, q), span->share ? span->share[q] : 1,
-                           domain->cell);
-    if (note) note(w, d, t, span, r);
-}
-/* Computes all pairs of a work group: those inside it, then those with later groups. In a world
-   with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the
-   others. */
-DEM_INLINE void demi_pairs_with(dem_world *w, int d, demi_tile_fn note) {
-    demi_domain *domain = &w->domains[d];
-    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */
-    demi_run run[2];
-    DEMI_ALIGNED demi_tile tile;
-    int l, p;
-    domain->contacts = 0;
-    if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
-    run[0] = demi_run_of(w, dt, 0);
-    run[1] = demi_run_of(w, dt, 1);
-    demi_tile_begin(w, d, &tile);
-    for (l = 0; l < 2; l++) {
-        const int begin = l ? domain->near_cross : 0;
-        const int end = w->effects.clustered ? begin + domain->near_lone[l]
-            : l ? domain->near_end : domain->near_own;
-        for (p = begin; p < end; p += DEMI_TILE) {
-            const int count = DEMI_MIN((int)DEMI_TILE, end - p);
-            const demi_span span = demi_span_of(w, d, p, count);
-            demi_tile_finish(w, d, &tile, &span, demi_tile_respond(w, &span, run, &tile), l, note);
-        }
-    }
-}
-static void demi_pairs(dem_world *w, int d) { demi_pairs_with(w, d, 0); }
-
-#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
-#pragma GCC pop_options
-#endif
 
 /* ---------------------------------------------------------------------------------------------
    >>noted
@@ -19308,12 +19088,13 @@ DEM_INLINE demi_noted_at *demi_note(dem_world *w, int d, int a, int b, int kind,
 static dem_vec3 demi_note_arm(dem_vec3 normal, dem_real radius, dem_real distance, dem_real radii) {
     return demi_scale(normal, radius*distance/radii);
 }
-/* Notes the contacts of a tile of work group d: spheres, also those of clusters. */
+/* Notes the contacts of a tile of work group d. */
 static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *span,
                            const demi_run *r) {
     int q, k;
     for (q = 0; q < span->count; q++) {
-        const int old = t->overlap[q] - t->closing[q]*r->same.dt > 0;
+        const demi_kept *c = span->points ? span->points->contact[q] : 0;
+        const int old = c ? c->from >= 0 : t->overlap[q] - t->closing[q]*r->same.dt > 0;
         const dem_vec3 normal = demi_row(t->normal, q);
         double energy[DEMI_E_ROLL + 1];
         demi_noted_at *at;
@@ -19321,19 +19102,353 @@ static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *s
         energy[DEMI_E_DASHPOT] = (double)(t->part[0][q] + t->part[6][q]);
         for (k = DEMI_E_ELASTIC; k <= DEMI_E_ROLL; k++) energy[k] = (double)t->part[k][q];
         at = demi_note(w, d, span->a[q], span->b[q],
-                       old*DEMI_NOTED_OLD | !span->ball*DEMI_NOTED_SPHERES, t->overlap[q] > 0,
-                       -demi_dot(demi_row(t->force, q), normal), energy);
-        if (at && span->ball) {
-            const int ball = span->ball[q];
-            at->normal = normal;
-            at->arm = demi_add(demi_at(w->bodies.centre + 4*ball), demi_note_arm(normal,
-                w->bodies.centre[4*ball + 3], t->length[q], t->length[q] + t->overlap[q]));
-            at->shift = demi_v(0, 0, 0);
+                       old*DEMI_NOTED_OLD | !span->points*DEMI_NOTED_SPHERES, t->overlap[q] > 0,
+                       -demi_dot(c ? c->force : demi_row(t->force, q), normal), energy);
+        if (!at || !span->points) continue;
+        at->normal = normal;
+        at->arm = demi_rows_at(&span->points->arm[0], q);
+        at->shift = c ? c->shift : demi_v(0, 0, 0);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>finish
+   What the contacts of a tile give once their forces are known: to both bodies, to walls, to the
+   ledger, to user-defined numbers, to a cell that deforms, and to events. A contact with a body of
+   a later work group stores the force on that body in a slot; the other work group adds it once all
+   are done, in list order. The order of every sum is thus independent of the number of threads.
+   Writes forces and rates of bodies, slots, sums of walls, and the sums of work groups.
+   --------------------------------------------------------------------------------------------- */
+
+/* Corrects the energy that dashpots took to the velocities of the actual path. */
+static void demi_tile_late(const dem_world *w, const demi_span *span, int full,
+                           demi_tile *DEMI_RESTRICT t) {
+    const dem_real *DEMI_RESTRICT late = w->bodies.late, wall[3] = {0, 0, 0};
+    int n;
+    for (n = 0; n < span->count; n++)
+        demi_rows_minus(&t->late, (size_t)n, DEMI_AT(late, span->a[n]),
+                        span->b[n] < 0 ? wall : DEMI_AT(late, span->b[n]));
+    DEMI_ROWS(full)
+        t->part[0][q] *= 1 + demi_late_share(demi_rows_at(&t->late, q), demi_row(t->normal, q),
+                                             t->closing[q]);
+    DEMI_ROWS_END
+}
+/* Adds the energies of a tile's contacts to the ledger, in list order. */
+static void demi_tile_book(const demi_tile *DEMI_RESTRICT t, int count, double *energy) {
+    int q;
+    for (q = 0; q < count; q++) {
+        energy[DEMI_E_DASHPOT] += (double)(t->part[0][q] + t->part[6][q]);
+        energy[DEMI_E_ELASTIC] += (double)t->part[1][q];
+        energy[DEMI_E_SHEAR_WORK] += (double)t->part[2][q];
+        energy[DEMI_E_SLIDE] += (double)t->part[3][q];
+        energy[DEMI_E_SHEAR_STORED] += (double)t->part[4][q];
+        energy[DEMI_E_ROLL] += (double)t->part[5][q];
+    }
+}
+/* Adds the contacts of a tile to the number and the largest relative overlap of its work group.
+   ranged: contacts also act across a gap, and those that do so do not count. */
+static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, int ranged,
+                            demi_domain *sum) {
+    dem_real deepest = 0, contacts = 0;
+    int q;
+    for (q = 0; q < count; q++) {
+        deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
+        contacts += t->touch[q];
+    }
+    for (q = 0; q < count && ranged; q++) contacts -= t->touch[q] > 0 && !(t->overlap[q] > 0);
+    sum->contacts += (int)contacts;
+    sum->overlap = DEMI_MAX(sum->overlap, (double)deepest);
+}
+DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) {
+    x += sum[0]; y += sum[1]; z += sum[2];
+    sum[0] = x; sum[1] = y; sum[2] = z;
+}
+DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
+    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
+}
+/* Adds a tile's forces to both bodies. */
+DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                             dem_real *DEMI_RESTRICT force, dem_real *DEMI_RESTRICT torque,
+                             int turning, int second) {
+    const int32_t *DEMI_RESTRICT la = span->a, *DEMI_RESTRICT lb = span->b;
+    const int count = span->count;
+    int n;
+    for (n = 0; n < count; n++) {
+        const size_t q = (size_t)n;
+        const int32_t i = la[q], j = lb[q];
+        const dem_real fx = t->force[0][q], fy = t->force[1][q], fz = t->force[2][q];
+        demi_sum_add(DEMI_AT(force, i), fx, fy, fz);
+        demi_sum_add(DEMI_AT(force, j), -fx, -fy, -fz);
+        if (!turning) continue;
+        demi_sum_add(DEMI_AT(torque, i), t->torque[0][0][q], t->torque[0][1][q],
+                     t->torque[0][2][q]);
+        demi_sum_add(DEMI_AT(torque, j), t->torque[second][0][q], t->torque[second][1][q],
+                     t->torque[second][2][q]);
+    }
+}
+/* Adds a tile's forces to both bodies in list order, which decides the bits of the sums. */
+static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                              const demi_run *r, dem_real *DEMI_RESTRICT force,
+                              dem_real *DEMI_RESTRICT torque) {
+    if (r->parting) demi_scatter(t, span, force, torque, 1, 1);
+    else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
+    else demi_scatter(t, span, force, torque, 0, 0);
+}
+/* The same for pairs with later work groups: forces on b stay in slots `out`, six reals for each
+   candidate. */
+static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                               const demi_run *r, dem_real *DEMI_RESTRICT force,
+                               dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT slots) {
+    int q;
+    for (q = 0; q < span->count; q++) {
+        dem_real *out = slots + 6*(size_t)span->k[q];
+        const dem_vec3 f = demi_row(t->force, q);
+        demi_force_add(DEMI_AT(force, span->a[q]), f);
+        if (r->turning) demi_force_add(DEMI_AT(torque, span->a[q]), demi_row(t->torque[0], q));
+        out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
+        if (r->turning) demi_put(out + 3, demi_row(t->torque[r->parting], q));
+    }
+}
+
+/* Adds the rates that a law returned for user-defined numbers, by the weights of the contacts, to
+   both bodies or to their slots or walls. send: as in demi_tile_finish. */
+static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span, dem_world *w,
+                                       int d, int send) {
+    const int n = w->bodies.real_count, all = !span->points;
+    int q, k;
+    for (q = 0; q < span->count; q++) {
+        const int i = span->b[q], touch = t->touch[q] > 0;
+        const int sends = all ? send : span->k[q] >= 0, sets = sends && all;
+        const dem_real share = all ? 1 : span->points->share[q];
+        dem_real *a = w->bodies.rates + n*span->a[q];
+        dem_real *b = sends ? w->cross_rate + (size_t)n*(size_t)span->k[q]
+            : w->bodies.rates + n*DEMI_MAX(i, 0);
+        double *wall = i >= 0 ? 0 : w->wall_rates +
+            (size_t)n*((size_t)d*(size_t)w->wall_count + (size_t)(-1 - i));
+        for (k = 0; k < n; k++) {
+            const dem_real gain = touch ? share*t->gains[q][DEM_BODY_REALS + k] : 0;
+            if (touch) a[k] += share*t->gains[q][k];
+            if (i < 0) wall[k] += (double)gain;
+            else if (sets) b[k] = gain;
+            else if (touch) b[k] += gain;
         }
     }
 }
-/* The force loop of spheres while events are recorded. */
-static void demi_pairs_noted(dem_world *w, int d) { demi_pairs_with(w, d, demi_tile_note); }
+
+/* Adds the contact of row q, by its share, to the sums of a cell that deforms. */
+DEM_INLINE void demi_tile_cell(const dem_world *w, const demi_tile *t, int q, dem_vec3 branch,
+                               dem_real share, double *sum) {
+    const dem_vec3 f = demi_v(t->force[0][q], t->force[1][q], t->force[2][q]);
+    demi_virial_add(sum, f, branch);
+    if (!demi_cell_stiffens(w) || !(t->overlap[q] > 0)) return;
+    demi_cell_stiffen(w, sum, demi_v(t->normal[0][q], t->normal[1][q], t->normal[2][q]), branch,
+                      t->coef[DEMI_KN][q], t->coef[DEMI_K_UN][q], t->coef[DEMI_CN][q],
+                      (double)t->overlap[q], (double)share);
+}
+/* The same for all contacts of a tile between bodies. */
+static DEMI_APART void demi_tile_cells(const dem_world *w, const demi_tile *t,
+                                       const demi_span *span, double *sum) {
+    const demi_points *p = span->points;
+    int q;
+    for (q = 0; q < span->count; q++)
+        if (t->touch[q] > 0 && span->b[q] >= 0)
+            demi_tile_cell(w, t, q, !p ? demi_rows_at(&t->gap, q)
+                           : demi_sub(demi_rows_at(&p->arm[0], q), demi_rows_at(&p->arm[1], q)),
+                           p ? p->slope[q]*(p->lift[q] + p->share[q]) : 1, sum);
+}
+/* Adds a force and a moment on a body at point `at` to the sums of its wall, with opposite sign.
+   surface: velocity of the wall there, m/s. */
+DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
+                              dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
+    const dem_vec3 arm = demi_sub(at, w->walls[wall].motion.point);
+    const dem_vec3 torque = demi_add(demi_cross(arm, force), moment);
+    sum->force[0] -= (double)force.x; sum->force[1] -= (double)force.y;
+    sum->force[2] -= (double)force.z;
+    sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y;
+    sum->torque[2] -= (double)torque.z;
+    sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
+}
+/* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
+   while a has its part of all (demi_kept_more). Over all parts, the two are the same. */
+DEM_INLINE dem_vec3 demi_point_own(const demi_points *t, int q, dem_vec3 *moment) {
+    const demi_kept *c = t->contact[q];
+    const dem_vec3 force = demi_v(t->rows.force[0][q], t->rows.force[1][q], t->rows.force[2][q]);
+    *moment = demi_v(t->rows.moment[0][q], t->rows.moment[1][q], t->rows.moment[2][q]);
+    if (!c->odd || !(c->more.part > 0)) return force;
+    *moment = demi_sub(*moment, demi_scale(c->more.turn, t->rows.repulsion[q]));
+    return demi_sub(force, demi_scale(c->more.lean, t->rows.repulsion[q]));
+}
+/* Adds the force of row q to the sums of its wall. */
+static void demi_point_wall(dem_world *w, int d, demi_points *t, int q) {
+    const int i = -1 - t->b[q];
+    const demi_wall *wall = &w->walls[i];
+    demi_wall_sum *sum = &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)i];
+    demi_kept *c = t->contact[q];
+    dem_vec3 moment, rubs = demi_row(t->rows.force, q);
+    c->force = demi_point_own(t, q, &moment);
+    demi_wall_sum_add(w, sum, i, t->at[q], c->force, moment, t->surface[q]);
+    if (!wall->glides) return;
+    if (t->raised[q] == 2) rubs = demi_sub(rubs, demi_scale(t->aside[q], t->still[q]));
+    /* only friction does work on a gliding surface */
+    sum->power += (double)demi_dot(rubs, demi_glide_at(wall, &wall->pose, c->normal));
+}
+/* Adds the forces of a tile to both bodies, to body a and the slot of b (several contacts may share
+   one), or to body a and its wall. */
+static void demi_points_push(dem_world *w, int d, demi_points *t) {
+    const int turns = demi_turns(w);            /* else nothing sets torques to 0 in a step */
+    int q;
+    for (q = 0; q < t->count; q++) {
+        const int a = t->a[q], b = t->b[q];
+        dem_real *out = t->k[q] < 0 ? 0 : w->cross_force + 6*(size_t)t->k[q];
+        const dem_vec3 force = demi_row(t->rows.force, q);
+        demi_force_add(w->bodies.force + 4*a, force);
+        if (turns) demi_force_add(w->bodies.torque + 4*a, demi_row(t->rows.torque[0], q));
+        if (b < 0) { demi_point_wall(w, d, t, q); continue; }
+        if (t->contact[q]) t->contact[q]->force = force;
+        demi_force_add(out ? out : w->bodies.force + 4*b, demi_scale(force, -1));
+        demi_force_add(out ? out + 3 : w->bodies.torque + 4*b, demi_row(t->rows.torque[1], q));
+    }
+}
+/* Adds what the contacts of a tile give to bodies or walls, to the ledger, to user-defined numbers,
+   to a cell that deforms and to events. send: 1 if the bodies b of lone spheres are of later work
+   groups, so that forces on them go to slots; 0 in a tile of >>points, where each row tells. */
+static void demi_tile_finish(dem_world *w, int d, demi_tile *t, const demi_span *span,
+                             const demi_run *r, int send) {
+    const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_domain *domain = &w->domains[d];
+    if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
+    if (r->ledger) demi_tile_book(t, span->count, domain->energy);
+    if (span->points) demi_points_push(w, d, span->points);
+    else if (!send) demi_tile_scatter(t, span, r, w->bodies.force, w->bodies.torque);
+    else demi_tile_send(t, span, r, w->bodies.force, w->bodies.torque, w->cross_force);
+    if (demi_exchanges(w)) demi_tile_rates(t, span, w, d, send);
+    if (w->cell.on) demi_tile_cells(w, t, span, domain->cell);
+    if (w->events.n.on) demi_tile_note(w, d, t, span, r);
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>pairs
+   Contacts of lone spheres: the loop over the pruned neighbour list, which holds their histories. A
+   tile is a run of consecutive entries.
+   --------------------------------------------------------------------------------------------- */
+
+/* Fills rows that no stage sets: coefficients that are the same for all pairs, and zero
+   friction. */
+static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
+    const demi_domain *domain = &w->domains[d];
+    const int first = demi_near_first(domain);
+    dem_real coef[DEMI_TILE_COLUMNS];
+    int e, q;
+    t->row = -1;
+    for (q = 0; q < DEMI_TILE && !demi_laws_precise(w); q++)
+        t->slope[0][q] = t->slope[1][q] = t->kt[1][q] = (dem_real)NAN;
+    if (first < domain->near_end) {
+        const demi_span one = demi_span_of(w, d, first, 1);
+        demi_span_coefs(w, &one, 0, coef);
+        if (!demi_laws_sized(w)) coef[DEMI_R_EFF] = coef[DEMI_M_EFF] = (dem_real)NAN;
+        for (e = 0; e < DEMI_TILE_COLUMNS; e++)
+            for (q = 0; q < DEMI_TILE; q++) t->coef[e][q] = coef[e];
+    }
+    memset(t->part, 0, sizeof t->part);
+    memset(t->tangent, 0, sizeof t->tangent);
+    memset(t->memory[DEMI_MEMORY], 0, sizeof t->memory[0]);
+}
+/* Copies the coefficients of a tile's pairs, except those that never vary (species_vary), which
+   demi_tile_begin has set. Returns the run to use: run[0] for pairs of different bodies, run[1] for
+   pairs of identical ones, which needs no radii, no differences of spins and one torque for both.
+   If all pairs share one row of the table, later tiles with the same row skip the copy. Such a row
+   is therefore copied to the end of the tile, since those tiles may be longer. */
+static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int full,
+                                 demi_tile *DEMI_RESTRICT t, demi_run *run) {
+    const int32_t *DEMI_RESTRICT row = span->row;
+    const int n = w->effects.species_count;
+    int e, q, differ = 0, same;
+    if (w->effects.uniform) return run + 1;
+    for (q = 0; q < full && row; q++) differ |= row[q]^row[0];
+    same = row && !differ;
+    for (e = 0; e < DEMI_TILE_COLUMNS && !(same && t->row == row[0]); e++) {
+        const dem_real *DEMI_RESTRICT table = w->species_coef + e;
+        if (!(w->species_vary >> e & 1)) continue;
+        if (!row) demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, full);
+        else if (differ) for (q = 0; q < full; q++) t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[q]];
+        else for (q = 0; q < DEMI_TILE; q++)    /* all of it: the next tile may be longer */
+            t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[0]];
+    }
+    t->row = same ? row[0] : -1;
+    if (!same || row[0]%(n + 1)) return run;    /* species k with k: row k*n + k */
+    run[1].same.radius = w->effects.species[row[0]/(n + 1)].radius;
+    run[1].same.inv_radius = 1/run[1].same.radius;
+    return run + 1;
+}
+
+/* A cell that deforms: adds the velocity difference of its flow to a row of relative velocities.
+   branch: m, from the centre of body a to that of b. */
+DEM_INLINE void demi_rows_flow(const dem_world *w, demi_rows *rate, int q, dem_vec3 branch) {
+    const dem_vec3 flow = demi_cell_flow(w, branch);
+    DEMI_XY(rate, 0, q) -= flow.x;
+    DEMI_XY(rate, 1, q) -= flow.y;
+    rate->z[q] -= flow.z;
+}
+/* The same for all pairs of a tile. */
+static DEMI_APART void demi_tile_flow(const demi_run *r, int count, demi_tile *t) {
+    int q;
+    for (q = 0; q < count; q++) {
+        demi_rows_flow(r->w, &t->rate, q, demi_rows_at(&t->gap, q));
+        if (r->following) demi_rows_flow(r->w, &t->gone, q, demi_rows_at(&t->gap, q));
+    }
+}
+/* Evaluates a tile with one of two runs, and returns that run. */
+static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
+                                   demi_tile *DEMI_RESTRICT t) {
+    const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_run *r = demi_tile_coefs(w, span, full, t, run);
+    int q, k;
+    r->span = span;
+    for (q = 0; q < r->keep; q++)
+        demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
+    demi_tile_fetch(r, full, t);
+    if (w->cell.on) demi_tile_flow(r, full, t);
+    for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
+    for (q = 0; q < r->keep; q++) {             /* `count` only: others may follow */
+        dem_real *memory = span->memory + (size_t)q*span->stride;
+        demi_row_copy(memory, t->memory[q], span->count/DEMI_LANES*DEMI_LANES);
+        for (k = span->count/DEMI_LANES*DEMI_LANES; k < span->count; k++)
+            memory[k] = t->memory[q][k];
+    }
+    return r;
+}
+
+/* Computes all pairs of a work group: those inside it, then those with later groups. In a world
+   with clusters it computes pairs of two lone spheres only; demi_pairs_members computes the
+   others. */
+static void demi_pairs(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: forces only */
+    demi_run run[2];
+    DEMI_ALIGNED demi_tile tile;
+    int l, p;
+    domain->contacts = 0;
+    if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
+    run[0] = demi_run_of(w, dt, 0);
+    run[1] = demi_run_of(w, dt, 1);
+    demi_tile_begin(w, d, &tile);
+    for (l = 0; l < 2; l++) {
+        const int begin = l ? domain->near_cross : 0;
+        const int end = w->effects.clustered ? begin + domain->near_lone[l]
+            : l ? domain->near_end : domain->near_own;
+        for (p = begin; p < end; p += DEMI_TILE) {
+            const int count = DEMI_MIN((int)DEMI_TILE, end - p);
+            const demi_span span = demi_span_of(w, d, p, count);
+            const demi_run *r = demi_tile_respond(w, &span, run, &tile);
+            demi_tile_tally(&tile, count, r->ranged, domain);
+            demi_tile_finish(w, d, &tile, &span, r, l);
+        }
+    }
+}
+
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
 
 #ifndef DEM_NO_POLYHEDRA
 
@@ -24726,7 +24841,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
-    if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
+    if (w->effects.clustered || (w->bodies.shaped && demi_response_is(w, DEMI_LAWS)))
+        demi_balls_place(w, domain->begin, domain->end);
     for (; !(domain->overflow & 16); old = old_end) {
         while (k < walls && gap[k] > gone) k++; /* not close enough yet */
         a = k < walls ? body[k] : INT_MAX;
@@ -24806,13 +24922,269 @@ static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>points
+   Forces of contacts at points of bodies: of member spheres (>>members) and persistent contacts
+   (>>kept-respond), with bodies and walls, a tile at a time. Those two fill the tile: who touches,
+   the arms from both centres to the contact, the relative motion of the centres, coefficients,
+   weights and history. A wall is a body b with zero arm: velocities are relative to its surface at
+   the contact. This part computes effective masses and the motion at the contact, evaluates the
+   laws by the stages of >>respond, and multiplies by the weights. Owns no data.
+   --------------------------------------------------------------------------------------------- */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif
+/* Returns (c x n).W (c x n), 1/kg, with the arm c and inverse inertia W of one side of row q. */
+DEM_INLINE dem_real demi_point_give(const demi_points *t, int side, dem_vec3 n, int q) {
+    const dem_vec3 v = demi_cross(demi_rows_at(&t->felt[side], q), n);
+    return t->yield[side][0][q]*v.x*v.x + t->yield[side][1][q]*v.y*v.y +
+        t->yield[side][2][q]*v.z*v.z + 2*(t->yield[side][3][q]*v.x*v.y +
+        t->yield[side][4][q]*v.x*v.z + t->yield[side][5][q]*v.y*v.z);
+}
+/* Effective mass m* of a contact, kg: from both bodies at the contact point, unless known. */
+DEM_INLINE void demi_point_mass(demi_points *DEMI_RESTRICT t, int q) {
+    const dem_vec3 n = demi_row(t->rows.normal, q);
+    const dem_real known = t->known[q];
+    const dem_real m = 1/(t->inv[q] + demi_point_give(t, 0, n, q) + demi_point_give(t, 1, n, q) +
+                          DEMI_TINY);
+    t->rows.coef[DEMI_M_EFF][q] = known > 0 ? known : m;
+}
+/* Relative motion at the contact: now, and (following) averaged over the step just taken. On entry
+   `turn` is the change of the normal in this step. */
+DEM_INLINE void demi_point_motion(demi_points *DEMI_RESTRICT t, const demi_same *s, int q,
+                                  int following) {
+    const dem_vec3 n = demi_row(t->rows.normal, q);
+    const dem_vec3 wa = demi_rows_at(&t->spin[0], q), wb = demi_rows_at(&t->spin[1], q);
+    const dem_vec3 apart = demi_sub(wa, wb);
+    const dem_vec3 u = demi_sub(demi_add(demi_rows_at(&t->rows.rate, q),
+                                         demi_cross(wa, demi_rows_at(&t->arm[0], q))),
+                                demi_cross(wb, demi_rows_at(&t->arm[1], q)));
+    const dem_real closing = demi_dot(u, n), slope = t->slope[q];
+    const dem_real root = DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    int e;
+    demi_row_put(t->rows.slip, q, demi_sub(u, demi_scale(n, closing)));
+    demi_rows_put(&t->rows.apart, q, apart);
+    t->rows.coef[DEMI_KN][q] = t->base[DEMI_KN][q]*slope;
+    t->rows.coef[DEMI_CN][q] = t->base[DEMI_CN][q]*slope + slope*t->root[0][q]*root;
+    t->rows.coef[DEMI_CT][q] = t->base[DEMI_CT][q] + t->root[1][q]*root;
+    DEMI_UNROLL
+    for (e = DEMI_K_UN; e < DEMI_COEFS; e++) t->rows.coef[e][q] = t->base[e][q]*slope;
+    /* the moment about the normal also does work */
+    t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
+    if (following) {
+        const dem_real per = s->dt > 0 ? 1/s->dt : 0;
+        const dem_vec3 way = demi_row(t->rows.turn, q);
+        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
+        const dem_vec3 sa = demi_rows_at(&t->spun[0], q), sb = demi_rows_at(&t->spun[1], q);
+        const dem_vec3 turn = demi_scale(way, per);
+        dem_vec3 gone = demi_sub(demi_add(demi_rows_at(&t->rows.gone, q),
+                                          demi_cross(sa, demi_rows_at(&t->mid[0], q))),
+                                 demi_cross(sb, demi_rows_at(&t->mid[1], q)));
+        gone = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
+        demi_row_put(t->rows.slip_step, q, demi_sub(gone, demi_scale(n, demi_dot(gone, n))));
+        demi_row_put(t->rows.turn, q, demi_sub(turn, demi_scale(n, demi_dot(turn, n))));
+        demi_rows_put(&t->rows.parted, q, demi_sub(sa, sb));
+        t->rows.twist[q] = demi_dot(demi_add(sa, sb), n)/2;
+    }
+}
+/* Multiplies forces, moments and energies by their weights. The elastic energy is
+   V = k overlap^2/2, while the law was given k slope. */
+DEM_INLINE void demi_point_weigh(demi_points *DEMI_RESTRICT t, int q) {
+    demi_tile *rows = &t->rows;
+    const dem_real share = t->share[q], grip = t->grip[q], stored = share/t->slope[q];
+    rows->repulsion[q] = share*rows->repulsion[q] + t->lift[q]*t->still[q];
+    demi_row_put(rows->tangent, q, demi_scale(demi_row(rows->tangent, q), grip));
+    demi_row_put(rows->moment, q, demi_scale(demi_row(rows->moment, q), grip));
+    rows->part[0][q] *= share;
+    rows->part[1][q] *= stored; rows->part[6][q] *= stored;
+    rows->part[2][q] *= grip; rows->part[3][q] *= grip;
+    rows->part[4][q] *= grip; rows->part[5][q] *= grip;
+}
+/* Torques on both bodies about their centres, of the force and the moments of row q; `moment`
+   receives the latter. turning: are there any from the laws? weighted: is the normal force not at
+   the contact, or with a moment about it? */
+DEM_INLINE void demi_point_torques(demi_points *DEMI_RESTRICT t, int q, int turning, int weighted) {
+    demi_tile *rows = &t->rows;
+    const dem_vec3 f = demi_row(rows->force, q);
+    const dem_vec3 push = demi_scale(demi_row(rows->normal, q), rows->repulsion[q]);
+    dem_vec3 m = turning ? demi_row(rows->torque[0], q) : demi_v(0, 0, 0);
+    dem_vec3 a = demi_cross(demi_rows_at(&t->arm[0], q), f);
+    if (weighted) {
+        m = demi_sub(m, demi_scale(push, t->couple[q]));
+        a = demi_add(a, demi_cross(demi_rows_at(&t->outset, q), push));
+    }
+    demi_row_put(rows->moment, q, m);
+    demi_row_put(rows->torque[0], q, demi_add(a, m));
+    demi_row_put(rows->torque[1], q,
+                 demi_scale(demi_add(demi_cross(demi_rows_at(&t->arm[1], q), f), m), -1));
+}
+#define DEMI_POINT_STAGE(NAME, ONE) \
+    DEMI_CLONES static void NAME(demi_points *DEMI_RESTRICT t, int full) { \
+        const demi_same s = t->run.same; \
+        (void)s; \
+        DEMI_ROWS(full) ONE; DEMI_ROWS_END \
+    }
+DEMI_POINT_STAGE(demi_points_mass, demi_point_mass(t, q))
+DEMI_POINT_STAGE(demi_points_motion, demi_point_motion(t, &s, q, 0))
+DEMI_POINT_STAGE(demi_points_motion_following, demi_point_motion(t, &s, q, 1))
+DEMI_POINT_STAGE(demi_points_weigh, demi_point_weigh(t, q))
+DEMI_POINT_STAGE(demi_points_torques_bare, demi_point_torques(t, q, 0, 0))
+DEMI_POINT_STAGE(demi_points_torques, demi_point_torques(t, q, 1, 0))
+DEMI_POINT_STAGE(demi_points_torques_weighted, demi_point_torques(t, q, 1, 1))
+#undef DEMI_POINT_STAGE
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
+
+/* True if two weights differ. */
+DEM_INLINE int demi_differ(dem_real a, dem_real b) { return a < b || a > b; }
+/* Sets the weights of row q to those of contact c (demi_kept). */
+DEM_INLINE void demi_points_weights(const dem_world *w, demi_points *t, int q, const demi_kept *c) {
+    t->share[q] = c->share;
+    t->grip[q] = c->grip;
+    t->slope[q] = c->slope;
+    t->lift[q] = c->lift - c->share;
+    t->raised[q] = (unsigned char)demi_differ(c->lift, c->share);
+    t->weighted |= c->odd || t->raised[q] || demi_differ(c->share, 1) || demi_differ(c->grip, 1) ||
+        (w->desc.ledger && demi_differ(c->slope, 1));
+    if (c->odd && demi_dot(c->more.aside, c->more.aside) > 0) {
+        /* on a at the centre of its sphere, on b at the point that the normal rotates about */
+        const dem_vec3 centre = demi_part_now(w, c->a, c->part_a).centre;
+        const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->more.along;
+        t->aside[q] = c->more.aside;
+        t->side[0][q] = centre;
+        t->side[1][q] = demi_add(c->arm_b, demi_sub(demi_sub(centre, c->arm_a),
+                                                    demi_scale(c->normal, 1/turn)));
+        t->raised[q] = 2;
+    }
+    t->lifted |= t->raised[q];
+}
+/* Prepares an empty tile whose first `rows` rows will be used. dt 0: forces only, history does not
+   advance. */
+static void demi_points_begin(const dem_world *w, demi_points *t, dem_real dt, int rows) {
+    int q;
+    t->run = demi_run_of(w, dt, 0);
+    t->laws = demi_run_begin(w, dt);
+    if (!w->desc.law) demi_run_laws(w, &t->laws, 0);
+    memset(&t->span, 0, sizeof t->span);
+    t->span.a = t->a;
+    t->span.b = t->b;
+    t->span.k = t->k;
+    t->span.points = t;
+    t->run.span = t->laws.span = &t->span;
+    t->count = t->ready = t->turns = t->weighted = t->lifted = 0;
+    for (q = 0; q < DEMI_TILE && q < rows; q++) {
+        t->rows.touch[q] = 1;
+        t->rows.length[q] = t->rows.lean[q] = 0;        /* laws leave torques to this part */
+        t->rows.memory[DEMI_MEMORY][q] = t->rows.repulsion[q] = 0;
+        t->filled[q] = 0;
+        t->still[q] = 0;                        /* if none is lifted */
+        demi_row_put(t->rows.tangent, q, demi_v(0, 0, 0));      /* if no law sets it */
+        demi_row_put(t->rows.moment, q, demi_v(0, 0, 0));
+        t->rows.slope[0][q] = t->rows.slope[1][q] = t->rows.kt[1][q] = (dem_real)NAN;
+    }
+    if (t->run.ledger) memset(t->rows.part, 0, sizeof t->rows.part);
+}
+/* Calls the user-defined law for each contact of a tile, first at rest for those lifted. */
+static void demi_points_law(const dem_world *w, demi_points *t) {
+    const demi_same same = t->run.same;
+    dem_contact c;
+    int q, rests;
+    demi_who_clear(&c.who);
+    for (q = 0; q < t->count; q++)
+        for (rests = t->raised[q] > 0; rests >= 0; rests--) {
+            dem_real *still = rests ? &t->still[q] : 0, m[DEMI_MEMORY];
+            dem_contact_force f;
+            demi_tile_own(&t->rows, &t->run, &same, q, w->desc.law_who, &c);
+            if (still) c.closing_speed = 0;
+            demi_recall(&t->rows, q, 0, t->run.keep, m);
+            demi_law(w, &c, m, &f);
+            if (still) { *still = f.normal; continue; }
+            demi_keep(&t->rows, q, 0, t->run.keep, m);
+            demi_normal_put(&t->rows, &same, q, &f, 2);
+            demi_tangent_put(&t->rows, &same, q, &f, 2);
+            demi_rolling_put(&t->rows, &same, q, &f, 2);
+        }
+}
+/* Evaluates the normal law at zero closing speed: the elastic force alone, N. History is
+   restored. */
+static void demi_points_still(demi_points *t, int full) {
+    const demi_run *r = &t->laws;
+    const int at = r->same.at_normal;
+    dem_real closing[DEMI_TILE], memory[DEMI_MEMORY][DEMI_TILE];
+    int e, q;
+    for (q = 0; q < full; q++) {
+        closing[q] = t->rows.closing[q];
+        t->rows.closing[q] = 0;
+        for (e = at; e < r->keep; e++) memory[e][q] = t->rows.memory[e][q];
+    }
+    r->stage[0](&t->rows, r, full);
+    for (q = 0; q < full; q++) {
+        t->still[q] = t->rows.repulsion[q];
+        t->rows.closing[q] = closing[q];
+        for (e = at; e < r->keep; e++) t->rows.memory[e][q] = memory[e][q];
+    }
+}
+/* Adds the elastic force across the normal that merged contacts have. */
+static void demi_points_aside(demi_points *t) {
+    int q;
+    for (q = 0; q < t->count; q++) {
+        const dem_vec3 aside = demi_scale(t->aside[q], t->still[q]);
+        const dem_vec3 far = demi_sub(t->side[1][q], demi_rows_at(&t->arm[1], q));
+        if (t->raised[q] < 2) continue;
+        demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
+        demi_row_put(t->rows.moment, q, demi_add(demi_row(t->rows.moment, q),
+                                                 demi_cross(far, aside)));
+        demi_row_put(t->rows.torque[0], q, demi_add(demi_row(t->rows.torque[0], q),
+                                                    demi_cross(t->side[0][q], aside)));
+        demi_row_put(t->rows.torque[1], q, demi_sub(demi_row(t->rows.torque[1], q),
+                                                    demi_cross(t->side[1][q], aside)));
+    }
+}
+/* Evaluates the contacts of a tile: forces, and torques about the centres of the bodies. */
+static void demi_points_evaluate(const dem_world *w, demi_points *t) {
+    const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    const demi_run *r = &t->run;
+    demi_tile *rows = &t->rows;
+    int k;
+    t->span.count = t->count;
+    if (t->turns) demi_points_mass(t, full);
+    (r->following ? demi_points_motion_following : demi_points_motion)(t, full);
+    if (!t->weighted) {
+        for (k = 1; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](rows, r, full);
+        (r->turning ? demi_points_torques : demi_points_torques_bare)(t, full);
+        return;
+    }
+    if (w->desc.law) demi_points_law(w, t);
+    else {
+        if (t->lifted) demi_points_still(t, full);
+        for (k = 0; k < DEMI_STAGES && t->laws.stage[k]; k++)
+            t->laws.stage[k](rows, &t->laws, full);
+    }
+    demi_points_weigh(t, full);
+    if (!r->turning) memset(rows->torque[0], 0, sizeof rows->torque[0]);
+    demi_answer_choose(r, demi_laws_roll(w))(rows, r, full);
+    demi_points_torques_weighted(t, full);
+    if (t->lifted) demi_points_aside(t);
+}
+/* Adds what the contacts of an evaluated tile give, stores their histories, and empties it. */
+static void demi_points_finish(dem_world *w, int d, demi_points *t) {
+    int q, e;
+    for (q = 0; q < t->count; q++)
+        for (e = 0; e < t->run.keep; e++) {
+            DEMI_ONE_BY_ONE(e);                 /* no call of memcpy for so few */
+            t->home[q][(size_t)e*t->hop] = t->rows.memory[e][q];
+        }
+    demi_tile_finish(w, d, &t->rows, &t->span, &t->run, 0);
+    t->count = t->turns = t->weighted = t->lifted = 0;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>kept-respond
-   Response of persistent contacts, a tile of them at a time. For each contact it finds the
-   coefficients, which contacts of one kind share (demi_coefs_row), and the history that it
-   continues, fills the rows in which the stages of >>respond evaluate the laws, and adds the forces
-   to both bodies, the sums of walls, the ledger's energies and the rates of user-defined numbers.
+   Response of persistent contacts. For each contact it finds the coefficients, which contacts of
+   one kind share (demi_coefs_row), and the history that it continues, and fills tiles of >>points.
    It also gathers the forces on bodies of later work groups, which wait in slots, for all contacts.
-   It owns w->coefs and the histories of persistent contacts, and adds to forces of bodies.
+   It owns w->coefs and the histories of persistent contacts.
    --------------------------------------------------------------------------------------------- */
 
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
@@ -24917,52 +25289,12 @@ static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
     return demi_part_now(w, k->a, k->part_a).radius +
         (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
 }
-/* Fills in `who` for a persistent contact. */
-static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rates,
-                          dem_contact_who *who) {
-    const dem_real radius = k->b >= 0 ? demi_part_now(w, k->b, k->part_b).radius
-        : demi_wall_is(&w->walls[k->wall], DEMI_BALLS) ? w->walls[k->wall].radius : 0;
-    demi_who_fill(w, k->a, k->b < 0 ? -1 - k->wall : k->b, demi_part_now(w, k->a, k->part_a).radius,
-                  radius, k->arm_a, rates, who);
-}
-#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
-#pragma GCC push_options
-#pragma GCC optimize("no-trapping-math")
-#endif
-/* A tile of persistent contacts: what only these need, and the rows for the stages of >>respond. A
-   wall is a body b with zero arm: velocities are relative to its surface at the contact point. */
-typedef struct demi_kept_tile {
-    demi_rows arm[2], mid[2], outset;      /* m, of a and b: now; at mid-step; demi_kept_more */
-    demi_rows spin[2], spun[2];    /* rad/s, of a and b: likewise */
-    dem_real share[DEMI_ROOM], grip[DEMI_ROOM], lift[DEMI_ROOM];      /* lift: minus share */
-    dem_real still[DEMI_ROOM];      /* N, elastic force, if any is lifted */
-    dem_real couple[DEMI_ROOM];
-    dem_real base[DEMI_COEFS][DEMI_ROOM], root[2][DEMI_ROOM];      /* coefficients without slope */
-    dem_real slope[DEMI_ROOM];
-    /* for 1/m_eff, if not all bodies are spheres: of a and b */
-    demi_rows felt[2];             /* m; 0: does not rotate */
-    dem_real q[2][4][DEMI_ROOM], I[2][3][DEMI_ROOM], inv[2][DEMI_ROOM];
-    /* the remaining fields are last, so that all rows begin on cache lines */
-    demi_tile rows;
-    const demi_coefs_row *row[DEMI_TILE];
-    const demi_coefs_row *filled[DEMI_TILE];       /* what base and root contain; null: unknown */
-    demi_kept *contact[DEMI_TILE];
-    const demi_kept *old[DEMI_TILE];               /* what each continues; a new one: itself */
-    const dem_real *past[DEMI_TILE];               /* history that each continues */
-    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* point on a wall, m; its velocity */
-    int count, lifted, shaped;     /* is `still` needed? bodies that are not spheres? */
-} demi_kept_tile;
-DEM_INLINE void demi_rows_put(demi_rows *DEMI_RESTRICT rows, int q, dem_vec3 v) {
-    DEMI_XY(rows, 0, q) = v.x;
-    DEMI_XY(rows, 1, q) = v.y;
-    rows->z[q] = v.z;
-}
 DEM_INLINE dem_vec3 demi_middle(dem_vec3 a, dem_vec3 b) {
     return demi_scale(demi_add(a, b), DEM_R(0.5));
 }
 /* Fills row q of a contact with a wall, on its wall's side. */
 DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_vec3 mid,
-                                     demi_kept_tile *t, int q) {
+                                     demi_points *t, int q) {
     const dem_world *w = r->w;
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
@@ -24987,7 +25319,7 @@ DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_
 }
 /* Fills row q of a contact of two bodies, on the side of body b. */
 DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, const demi_kept *old,
-                                     demi_kept_tile *t, int q) {
+                                     demi_points *t, int q) {
     const dem_world *w = r->w;
     const dem_real *u = w->bodies.vel, *uh = w->bodies.half_vel;
     demi_rows_minus(&t->rows.rate, (size_t)q, u + 4*k->a, u + 4*k->b);
@@ -25002,296 +25334,90 @@ DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, cons
         demi_rows_flow(w, &t->rows.gone, q, demi_sub(demi_rows_at(&t->mid[0], q),
                                                      demi_rows_at(&t->mid[1], q)));
 }
-/* Fills row q with the mobility of body `who` (side 0: a, 1: b; negative: a wall) at an arm:
-   1/mass, orientation and moments of inertia. */
-DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, int side,
-                                     demi_kept_tile *t, int q) {
-    const dem_real inv = t->row[q]->inv[side];
-    const int turns = inv > 0 && t->row[q]->shape[side];
-    int e;
-    t->inv[side][q] = inv;
-    demi_rows_put(&t->felt[side], q, turns ? arm : demi_v(0, 0, 0));
-    if (turns) {
-        DEMI_UNROLL
-        for (e = 0; e < 4; e++) t->q[side][e][q] = w->bodies.orient[4*who + e];
-        DEMI_UNROLL
-        for (e = 0; e < 3; e++) t->I[side][e][q] = w->bodies.moment[4*who + e];
-        return;
-    }
-    DEMI_UNROLL
-    for (e = 0; e < 4; e++) t->q[side][e][q] = 0;
-    DEMI_UNROLL
-    for (e = 0; e < 3; e++) t->I[side][e][q] = 1;
-}
 /* Fills row q with the coefficients of its contact, unless it has them already. */
-DEM_INLINE void demi_kept_fetch_coefs(demi_kept_tile *t, int q) {
-    const demi_coefs_row *row = t->row[q];
+DEM_INLINE void demi_kept_fetch_coefs(demi_points *t, int q, const demi_coefs_row *row) {
     int e;
-    t->rows.coef[DEMI_M_EFF][q] = row->m_eff;
+    t->rows.coef[DEMI_M_EFF][q] = t->known[q] = row->m_eff;
+    t->turns |= !(row->m_eff > 0);
     if (t->filled[q] == row) return;
     for (e = 0; e < DEMI_COEFS; e++) t->base[e][q] = t->rows.coef[e][q] = row->coef[e];
     t->root[0][q] = row->root[0];
     t->root[1][q] = row->root[1];
     t->filled[q] = row;
 }
-/* Fills row q from a contact and the old one that it continues. */
-static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_kept *old,
-                            demi_kept_tile *t, int q) {
-    const dem_world *w = r->w;
-    const dem_vec3 mid = demi_middle(k->arm_a, old->arm_a);
+/* Fills row q with what the effective mass of its contact depends on. */
+DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, const demi_kept *k, demi_points *t,
+                                     int q) {
+    const dem_vec3 felt = demi_kept_felt(k);
+    const dem_real *a = w->bodies.yield + 6*k->a, *b = w->bodies.yield + 6*DEMI_MAX(k->b, 0);
+    const dem_real both = k->b < 0 ? DEM_R(0) : DEM_R(1);
     int e;
-    for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = t->past[q][e];
-    demi_row_put(t->rows.normal, q, k->normal);
-    t->rows.overlap[q] = k->overlap;
-    demi_rows_put(&t->arm[0], q, k->arm_a);
-    demi_rows_put(&t->spin[0], q, demi_at(w->bodies.spin + 4*k->a));
-    if (r->following) {
-        demi_row_put(t->rows.turn, q, demi_sub(k->normal, old->normal));
-        demi_rows_put(&t->mid[0], q, mid);
-        demi_rows_put(&t->spun[0], q, demi_at(w->bodies.half_spin + 4*k->a));
+    demi_rows_put(&t->felt[0], q, demi_sub(k->arm_a, felt));
+    demi_rows_put(&t->felt[1], q, demi_sub(k->arm_b, felt));
+    t->inv[q] = w->bodies.inv_mass[k->a] + (k->b < 0 ? 0 : w->bodies.inv_mass[k->b]);
+    DEMI_UNROLL
+    for (e = 0; e < 6; e++) {
+        t->yield[0][e][q] = a[e];
+        t->yield[1][e][q] = b[e]*both;
     }
-    if (k->b < 0) demi_kept_fetch_wall(r, k, mid, t, q);
-    else demi_kept_fetch_pair(r, k, old, t, q);
-    demi_kept_fetch_coefs(t, q);
-    t->slope[q] = k->slope;
-    t->share[q] = k->share;
-    t->grip[q] = k->grip;
-    t->lift[q] = k->lift - k->share;
-    t->couple[q] = k->odd ? k->more.couple : 0;
-    demi_rows_put(&t->outset, q, k->odd ? k->more.outset : demi_v(0, 0, 0));
-    if (!t->shaped) return;
-    demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, demi_kept_felt(k)), 0, t, q);
-    demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, demi_kept_felt(k)), 1, t, q);
+}
+/* Appends contact c, which continues `old` with the history `past` and has the coefficients `row`,
+   to a tile. */
+static void demi_kept_add(demi_points *t, demi_kept *c, const demi_kept *old,
+                          const dem_real *past, const demi_coefs_row *row) {
+    const demi_run *r = &t->run;
+    const dem_world *w = r->w;
+    const dem_vec3 mid = demi_middle(c->arm_a, old->arm_a);
+    const int q = t->count++;
+    int e;
+    t->contact[q] = c;
+    t->a[q] = c->a;
+    t->b[q] = c->b < 0 ? -1 - c->wall : c->b;
+    t->k[q] = c->b < 0 ? -1 : c->send - 1;
+    t->home[q] = c->memory;
+    for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = past[e];
+    demi_row_put(t->rows.normal, q, c->normal);
+    t->rows.overlap[q] = c->overlap;
+    demi_rows_put(&t->arm[0], q, c->arm_a);
+    demi_rows_put(&t->spin[0], q, demi_at(w->bodies.spin + 4*c->a));
+    if (r->following) {
+        demi_row_put(t->rows.turn, q, demi_sub(c->normal, old->normal));
+        demi_rows_put(&t->mid[0], q, mid);
+        demi_rows_put(&t->spun[0], q, demi_at(w->bodies.half_spin + 4*c->a));
+    }
+    if (c->b < 0) demi_kept_fetch_wall(r, c, mid, t, q);
+    else demi_kept_fetch_pair(r, c, old, t, q);
+    demi_kept_fetch_coefs(t, q, row);
+    demi_points_weights(w, t, q, c);
+    t->couple[q] = c->odd ? c->more.couple : 0;
+    demi_rows_put(&t->outset, q, c->odd ? c->more.outset : demi_v(0, 0, 0));
+    if (w->bodies.shaped) demi_kept_fetch_felt(w, c, t, q);
+    if (!w->desc.law) return;
+    t->rows.radius[0][q] = demi_part_now(w, c->a, c->part_a).radius;
+    t->rows.radius[1][q] = c->b < 0 ? 0 : demi_part_now(w, c->b, c->part_b).radius;
 }
 /* Pads the last vector group of a tile with copies of its last contact, in every row that was
-   filled. The padded results are ignored; copies avoid arithmetic on undefined values. */
-static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
+   filled, unless an earlier contact has left something. The padded results are ignored; copies
+   avoid arithmetic on undefined values. */
+static void demi_kept_fill_up(demi_points *t, int full) {
+    const int last = t->count - 1, shaped = t->run.w->bodies.shaped;
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
         t->rows.memory[0], t->rows.coef[0], t->base[0], t->slope, t->share, t->grip, t->lift,
-        t->couple, t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
-    const int counts[] = {3, 1, 3, keep, DEMI_TILE_COLUMNS, DEMI_COEFS, 1, 1, 1, 1, 1,
-        2, t->shaped ? 8 : 0, t->shaped ? 6 : 0, t->shaped ? 2 : 0};
+        t->couple, t->root[0], t->known, t->inv, t->yield[0][0]};
+    const int counts[] = {3, 1, 3, t->run.keep, DEMI_TILE_COLUMNS, DEMI_COEFS, 1, 1, 1, 1,
+        1, 2, 1, shaped ? 1 : 0, shaped ? 12 : 0};
     demi_rows *const triples[] = {&t->rows.rate, &t->rows.gone, t->arm, t->arm + 1, t->mid,
         t->mid + 1, &t->outset, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
-    const int last = t->count - 1;
+    const int from = DEMI_MAX(last + 1, t->ready);
     int k, e, q;
-    for (q = last + 1; q < full; q++) t->filled[q] = 0;
     for (k = 0; k < (int)(sizeof rows/sizeof *rows); k++)
         for (e = 0; e < counts[k]; e++)
-            for (q = last + 1; q < full; q++)
+            for (q = from; q < full; q++)
                 rows[k][e*DEMI_ROOM + q] = rows[k][e*DEMI_ROOM + last];
-    for (k = 0; k < (int)(sizeof triples/sizeof *triples) - (t->shaped ? 0 : 2); k++)
-        for (q = last + 1; q < full; q++)
+    for (k = 0; k < (int)(sizeof triples/sizeof *triples) - (shaped ? 0 : 2); k++)
+        for (q = from; q < full; q++)
             demi_rows_put(triples[k], q, demi_rows_at(triples[k], last));
-}
-/* Inverse mass, 1/kg, that a force along n finds at its arm: 1/m + (arm x n).I^-1 (arm x n). */
-DEM_INLINE dem_real demi_kept_give(demi_kept_tile *DEMI_RESTRICT t, int side, int q) {
-    const dem_vec3 c = demi_cross(demi_rows_at(&t->felt[side], q), demi_row(t->rows.normal, q));
-    const dem_vec3 v = dem_quat_unrotate(dem_quat_make(t->q[side][0][q], t->q[side][1][q],
-                                                       t->q[side][2][q], t->q[side][3][q]), c);
-    return t->inv[side][q] + (v.x*v.x/t->I[side][0][q] + v.y*v.y/t->I[side][1][q] +
-                              v.z*v.z/t->I[side][2][q]);
-}
-/* Effective mass m* of a contact, kg: from both bodies at the contact point, unless already
-   known. */
-DEM_INLINE void demi_kept_mass_one(demi_kept_tile *DEMI_RESTRICT t, int q) {
-    const dem_real known = t->rows.coef[DEMI_M_EFF][q];
-    const dem_real m = 1/(demi_kept_give(t, 0, q) + demi_kept_give(t, 1, q));
-    t->rows.coef[DEMI_M_EFF][q] = known > 0 ? known : m;
-}
-/* Relative motion at the contact: now, and (following) averaged over the step just taken. */
-DEM_INLINE void demi_kept_motion_one(demi_kept_tile *DEMI_RESTRICT t, const demi_same *s, int q,
-                                     int following) {
-    const dem_vec3 n = demi_row(t->rows.normal, q);
-    const dem_vec3 wa = demi_rows_at(&t->spin[0], q), wb = demi_rows_at(&t->spin[1], q);
-    const dem_vec3 apart = demi_sub(wa, wb);
-    const dem_vec3 u = demi_sub(demi_add(demi_rows_at(&t->rows.rate, q),
-                                         demi_cross(wa, demi_rows_at(&t->arm[0], q))),
-                                demi_cross(wb, demi_rows_at(&t->arm[1], q)));
-    const dem_real closing = demi_dot(u, n), slope = t->slope[q];       /* d overlap/d approach */
-    const dem_real root = DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
-    int e;
-    demi_row_put(t->rows.slip, q, demi_sub(u, demi_scale(n, closing)));
-    demi_rows_put(&t->rows.apart, q, apart);
-    t->rows.coef[DEMI_KN][q] = t->base[DEMI_KN][q]*slope;
-    t->rows.coef[DEMI_CN][q] = t->base[DEMI_CN][q]*slope + slope*t->root[0][q]*root;
-    t->rows.coef[DEMI_CT][q] = t->base[DEMI_CT][q] + t->root[1][q]*root;
-    DEMI_UNROLL
-    for (e = DEMI_K_UN; e < DEMI_COEFS; e++) t->rows.coef[e][q] = t->base[e][q]*slope;
-    /* the moment about the normal also does work */
-    t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
-    if (following) {
-        const dem_real per = s->dt > 0 ? 1/s->dt : 0;
-        const dem_vec3 way = demi_row(t->rows.turn, q);
-        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
-        const dem_vec3 sa = demi_rows_at(&t->spun[0], q), sb = demi_rows_at(&t->spun[1], q);
-        const dem_vec3 turn = demi_scale(way, per);
-        dem_vec3 gone = demi_sub(demi_add(demi_rows_at(&t->rows.gone, q),
-                                          demi_cross(sa, demi_rows_at(&t->mid[0], q))),
-                                 demi_cross(sb, demi_rows_at(&t->mid[1], q)));
-        gone = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
-        demi_row_put(t->rows.slip_step, q, demi_sub(gone, demi_scale(n, demi_dot(gone, n))));
-        demi_row_put(t->rows.turn, q, demi_sub(turn, demi_scale(n, demi_dot(turn, n))));
-        demi_rows_put(&t->rows.parted, q, demi_sub(sa, sb));
-        t->rows.twist[q] = demi_dot(demi_add(sa, sb), n)/2;
-    }
-}
-/* Force and torques of a contact, each part times its weight. */
-DEM_INLINE void demi_kept_answer_one(demi_kept_tile *DEMI_RESTRICT t, int q, int rolls) {
-    const dem_vec3 n = demi_row(t->rows.normal, q);
-    const dem_real press = t->share[q]*t->rows.repulsion[q] + t->lift[q]*t->still[q];
-    const dem_vec3 push = demi_scale(n, press);
-    const dem_vec3 force = demi_sub(demi_scale(demi_row(t->rows.tangent, q), t->grip[q]), push);
-    dem_vec3 moment = demi_scale(push, -t->couple[q]);
-    if (rolls) moment = demi_add(moment, demi_scale(demi_row(t->rows.moment, q), t->grip[q]));
-    demi_row_put(t->rows.force, q, force);
-    demi_row_put(t->rows.moment, q, moment);
-    demi_row_put(t->rows.torque[0], q, demi_add(demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
-                 force), demi_cross(demi_rows_at(&t->outset, q), push)), moment));
-    demi_row_put(t->rows.torque[1], q,
-                 demi_scale(demi_add(demi_cross(demi_rows_at(&t->arm[1], q), force), moment), -1));
-}
-#define DEMI_KEPT_STAGE(NAME, ONE) \
-    DEMI_CLONES static void NAME(demi_kept_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
-        const demi_same s = r->same; \
-        (void)s; \
-        DEMI_ROWS(full) ONE; DEMI_ROWS_END \
-    }
-DEMI_KEPT_STAGE(demi_kept_mass, demi_kept_mass_one(t, q))
-DEMI_KEPT_STAGE(demi_kept_motion, demi_kept_motion_one(t, &s, q, 0))
-DEMI_KEPT_STAGE(demi_kept_motion_following, demi_kept_motion_one(t, &s, q, 1))
-DEMI_KEPT_STAGE(demi_kept_answer, demi_kept_answer_one(t, q, 0))
-DEMI_KEPT_STAGE(demi_kept_answer_rolling, demi_kept_answer_one(t, q, 1))
-#undef DEMI_KEPT_STAGE
-#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
-#pragma GCC pop_options
-#endif
-
-/* True if the elastic force is not along the normal. */
-DEM_INLINE int demi_kept_aslant(const demi_kept *k) {
-    return k->odd && demi_dot(k->more.aside, k->more.aside) > 0;
-}
-/* True if the weight of the elastic force differs from that of the dashpot. */
-DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
-    return k->lift < k->share || k->lift > k->share || demi_kept_aslant(k);
-}
-/* Fills a dem_contact from row q for a law that is called contact by contact. */
-static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run *r, int q,
-                          dem_contact *c) {
-    const demi_kept *k = t->contact[q];
-    demi_tile_contact(&t->rows, &r->same, q, c);
-    if (!w->desc.law) return;
-    demi_who_clear(&c->who);
-    c->range = r->ranged ? demi_range(w, demi_kept_radii(w, k)) : 0;
-    c->material_a = w->bodies.material[k->a];
-    c->material_b = k->b >= 0 ? w->bodies.material[k->b] : w->walls[k->wall].material + 1;
-    c->wall = k->b >= 0 ? 0 : w->walls[k->wall].id;
-    c->user = w->desc.law_user;
-    if (w->desc.law_who) demi_kept_who(w, k, t->rows.gains[q], &c->who);
-}
-/* Calls the law for row q of a tile. still: null, or where only the elastic force goes: the contact
-   is at rest then, and keeps its history. */
-static void demi_row_law(const dem_world *w, demi_tile *t, const demi_run *r, int q, dem_contact *c,
-                         dem_real *still) {
-    dem_real m[DEMI_MEMORY];
-    dem_contact_force f;
-    if (still) c->closing_speed = 0;
-    demi_recall(t, q, 0, r->keep, m);
-    demi_law(w, c, m, &f);
-    if (still) { *still = f.normal; return; }
-    demi_keep(t, q, 0, r->keep, m);
-    demi_normal_put(t, &r->same, q, &f, 2);
-    demi_tangent_put(t, &r->same, q, &f, 2);
-    demi_rolling_put(t, &r->same, q, &f, 2);
-}
-/* Evaluates laws contact by contact: a user-defined law, or built-in laws for a few contacts. */
-static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
-    dem_contact c;
-    int q, rests;
-    for (q = 0; q < t->count; q++)
-        for (t->still[q] = 0, rests = demi_kept_lifted(t->contact[q]); rests >= 0; rests--) {
-            demi_kept_see(w, t, r, q, &c);
-            demi_row_law(w, &t->rows, r, q, &c, rests ? &t->still[q] : 0);
-        }
-}
-/* Evaluates the normal law at zero closing speed: the elastic force alone, N. History is
-   restored. */
-static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
-    const int at = r->same.at_normal;
-    dem_real closing[DEMI_TILE], memory[DEMI_MEMORY][DEMI_TILE];
-    int e, q;
-    for (q = 0; q < full; q++) {
-        closing[q] = t->rows.closing[q];
-        t->rows.closing[q] = 0;
-        for (e = at; e < r->keep; e++) memory[e][q] = t->rows.memory[e][q];
-    }
-    r->stage[0](&t->rows, r, full);
-    for (q = 0; q < full; q++) {
-        t->still[q] = t->rows.repulsion[q];
-        t->rows.closing[q] = closing[q];
-        for (e = at; e < r->keep; e++) t->rows.memory[e][q] = memory[e][q];
-    }
-}
-/* Adds a force and a moment on a body at point `at` to the sums of its wall, with opposite sign.
-   surface: velocity of the wall there, m/s. */
-DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
-                              dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
-    const dem_vec3 arm = demi_sub(at, w->walls[wall].motion.point);
-    const dem_vec3 torque = demi_add(demi_cross(arm, force), moment);
-    sum->force[0] -= (double)force.x; sum->force[1] -= (double)force.y;
-    sum->force[2] -= (double)force.z;
-    sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y;
-    sum->torque[2] -= (double)torque.z;
-    sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
-}
-/* Velocity, m/s, by which a and b (b < 0: a wall) closed faster than predicted. */
-DEM_INLINE dem_vec3 demi_late_of(const dem_world *w, int a, int b) {
-    const dem_vec3 late = demi_at(w->bodies.late + 4*a);
-    return b < 0 ? late : demi_sub(late, demi_at(w->bodies.late + 4*b));
-}
-/* Computes the energies of the contact of row q, J, for the ledger. Friction and rolling may have
-   another weight than the rest: see demi_kept_lift. */
-static void demi_kept_energy(const dem_world *w, const demi_kept_tile *t, int q, double *energy) {
-    const demi_tile *rows = &t->rows;
-    const demi_kept *c = t->contact[q];
-    const dem_real share = c->share, grip = c->grip, slope = c->slope;
-    const dem_real late = !w->bodies.booked ? 0
-        : demi_late_share(demi_late_of(w, c->a, c->b), c->normal, rows->closing[q]);
-    /* V = k overlap^2/2; the law was given k slope */
-    energy[DEMI_E_DASHPOT] = (double)(share*(rows->part[0][q]*(1 + late) + rows->part[6][q]/slope));
-    energy[DEMI_E_ELASTIC] = (double)(share*(rows->part[1][q]/slope));
-    energy[DEMI_E_SHEAR_WORK] = (double)(grip*rows->part[2][q]);
-    energy[DEMI_E_SLIDE] = (double)(grip*rows->part[3][q]);
-    energy[DEMI_E_SHEAR_STORED] = (double)(grip*rows->part[4][q]);
-    energy[DEMI_E_ROLL] = (double)(grip*rows->part[5][q]);
-}
-/* Notes the contact of row q for events. */
-static DEMI_APART void demi_kept_note(dem_world *w, int d, const demi_kept_tile *t, int q,
-                                      const double *energy) {
-    const demi_kept *c = t->contact[q];
-    demi_noted_at *at = demi_note(w, d, c->a, c->b < 0 ? -1 - c->wall : c->b, c->from >= 0,
-                                  c->overlap > 0, -demi_dot(c->force, c->normal), energy);
-    if (!at) return;
-    at->normal = c->normal;
-    at->arm = c->arm_a;
-    at->shift = c->shift;
-}
-
-/* Adds the rates that a law returned for user-defined numbers, times the weight of contact c. */
-static DEMI_APART void demi_kept_rates(dem_world *w, int d, const demi_kept *c,
-                                       const dem_real *rates) {
-    const int n = w->bodies.real_count;
-    double *wall = c->b >= 0 ? 0 : w->wall_rates +
-        (size_t)n*((size_t)d*(size_t)w->wall_count + (size_t)c->wall);
-    dem_real *b = c->b < 0 ? 0 : c->send ? w->cross_rate + (size_t)n*(size_t)(c->send - 1)
-        : w->bodies.rates + n*c->b;
-    int k;
-    for (k = 0; k < n; k++) {
-        const dem_real gain = c->share*rates[DEM_BODY_REALS + k];
-        w->bodies.rates[n*c->a + k] += c->share*rates[k];
-        if (b) b[k] += gain;
-        else wall[k] += (double)gain;
-    }
+    t->ready = DEMI_MAX(t->ready, full);
 }
 /* Prefetches a body that a later contact will read and change. */
 DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
@@ -25305,103 +25431,21 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.orient + 4*body);
     DEMI_FETCH(w->bodies.moment + 4*body);
 }
-/* Adds the tangential force of merged contacts (`aside`). It acts on a at the centre of its
-   sphere, and on b at the point that the normal rotates about, 1/bend or 1/along away. */
-static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
-    const demi_kept *c = t->contact[q];
-    const dem_vec3 aside = demi_scale(c->more.aside, t->still[q]);
-    const dem_vec3 arm = demi_sub(demi_part_now(w, c->a, c->part_a).centre, c->arm_a);
-    const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->more.along;
-    const dem_vec3 far = demi_sub(arm, demi_scale(c->normal, 1/turn));
-    const dem_vec3 moment = demi_cross(far, aside);
-    demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
-    demi_row_put(t->rows.moment, q, demi_add(demi_row(t->rows.moment, q), moment));
-    demi_row_put(t->rows.torque[0], q, demi_add(demi_row(t->rows.torque[0], q),
-                          demi_cross(demi_add(c->arm_a, arm), aside)));
-    demi_row_put(t->rows.torque[1], q, demi_sub(demi_row(t->rows.torque[1], q),
-                          demi_add(demi_cross(c->arm_b, aside), moment)));
+/* Prepares an empty tile for up to `count` contacts: see demi_points_begin. */
+static void demi_kept_tile_begin(const dem_world *w, demi_points *t, dem_real dt, int count) {
+    demi_points_begin(w, t, dt, count + DEMI_LANES);
+    if (w->desc.law) t->run.stage[1] = demi_stage_own;      /* rows of contacts know no wall */
+    t->hop = 1;
 }
-/* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
-   while a has its part of all (demi_kept_more). Over all parts, the two are the same. */
-DEM_INLINE dem_vec3 demi_kept_own(demi_kept_tile *t, int q, dem_vec3 *moment) {
-    const demi_kept *c = t->contact[q];
-    dem_real press;
-    *moment = demi_row(t->rows.moment, q);
-    if (!c->odd || !(c->more.part > 0)) return demi_row(t->rows.force, q);
-    press = t->share[q]*t->rows.repulsion[q];
-    *moment = demi_sub(*moment, demi_scale(c->more.turn, press));
-    return demi_sub(demi_row(t->rows.force, q), demi_scale(c->more.lean, press));
+/* Evaluates the contacts of a tile. */
+static void demi_kept_evaluate(const dem_world *w, demi_points *t) {
+    demi_kept_fill_up(t, (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES);
+    demi_points_evaluate(w, t);
 }
-/* Adds the force of row q to both bodies, or to body a and the sums of its wall. */
-static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
-    demi_kept *c = t->contact[q];
-    const dem_vec3 force = demi_row(t->rows.force, q);
-    demi_force_add(w->bodies.force + 4*c->a, force);
-    if (demi_turns(w))                          /* else nothing sets torques to 0 in a step */
-        demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
-    if (c->b >= 0) {                            /* several contacts may share a slot */
-        dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
-        c->force = force;
-        demi_force_add(out ? out : w->bodies.force + 4*c->b, demi_scale(force, -1));
-        demi_force_add(out ? out + 3 : w->bodies.torque + 4*c->b, demi_row(t->rows.torque[1], q));
-    } else {
-        const demi_wall *wall = &w->walls[c->wall];
-        demi_wall_sum *sum = &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall];
-        dem_vec3 moment;
-        c->force = demi_kept_own(t, q, &moment);
-        demi_wall_sum_add(w, sum, c->wall, t->at[q], c->force, moment, t->surface[q]);
-        if (wall->glides)                       /* only friction does work on a gliding surface */
-            sum->power += (double)(t->grip[q]*demi_dot(demi_row(t->rows.tangent, q),
-                demi_glide_at(wall, &wall->pose, c->normal)));
-    }
-}
-/* Evaluates the contacts of a tile. Fewer than four are evaluated one by one, since a vector group
-   costs as much for one contact as for all that fit. Results are the same to the bit. */
-static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_kept_tile *t) {
-    const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    const int few = t->count < 4, rolls = demi_laws_roll(w);
-    int q, k;
-    for (q = 0; q < t->count; q++)
-        demi_kept_fetch(r, t->contact[q], t->old[q], t, q);
-    if (few) {
-        for (q = 0; q < t->count && t->shaped; q++) demi_kept_mass_one(t, q);
-        for (q = 0; q < t->count; q++) demi_kept_motion_one(t, &r->same, q, r->following);
-        demi_kept_laws(w, t, r);
-        for (q = 0; q < t->count; q++) demi_kept_answer_one(t, q, rolls);
-        return;
-    }
-    demi_kept_fill_up(t, r->keep, full);
-    if (t->shaped) demi_kept_mass(t, r, full);
-    (r->following ? demi_kept_motion_following : demi_kept_motion)(t, r, full);
-    if (w->desc.law) demi_kept_laws(w, t, r);
-    else {
-        if (t->lifted) demi_kept_still(t, r, full);
-        for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](&t->rows, r, full);
-    }
-    (rolls ? demi_kept_answer_rolling : demi_kept_answer)(t, r, full);
-}
-/* Evaluates a tile, then adds forces to both sides, updates sums of walls, energies and history. */
-static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_kept_tile *t) {
-    demi_domain *domain = &w->domains[d];
-    demi_tile *rows = &t->rows;
-    double energy[DEMI_E_ROLL + 1];
-    int q, e;
-    demi_kept_tile_answer(w, r, t);
-    for (q = 0; q < t->count; q++) {
-        demi_kept *c = t->contact[q];
-        for (e = 0; e < r->keep; e++) c->memory[e] = rows->memory[e][q];
-        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        demi_kept_push(w, d, t, q);
-        if (w->cell.on && c->b >= 0)
-            demi_tile_cell(w, rows, q, demi_sub(c->arm_a, c->arm_b), c->slope*c->lift,
-                           domain->cell);
-        if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
-        if (!r->ledger) continue;
-        demi_kept_energy(w, t, q, energy);
-        for (e = 0; e <= DEMI_E_ROLL; e++) domain->energy[e] += energy[e];
-        if (w->events.n.on) demi_kept_note(w, d, t, q, energy);
-    }
-    t->count = t->lifted = t->shaped = 0;
+/* Evaluates a tile and adds its results. */
+static void demi_kept_tile_respond(dem_world *w, int d, demi_points *t) {
+    demi_kept_evaluate(w, t);
+    demi_points_finish(w, d, t);
 }
 /* Counts a contact that a law is evaluated for: materials that have touched, largest overlap,
    numbers of contacts. fresh: it begins to touch in this step. */
@@ -25422,44 +25466,17 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
         touches && !c->corner;
     domain->kept_walls += touches;
 }
-/* Empties a tile and sets what adding a contact does not set, in the first `rows` rows. */
-static void demi_kept_tile_begin(demi_kept_tile *t, const demi_run *r, int rows) {
-    int q;
-    t->count = t->lifted = t->shaped = 0;
-    for (q = 0; q < DEMI_TILE && q < rows; q++) {
-        t->rows.touch[q] = 1;
-        t->rows.memory[DEMI_MEMORY][q] = 0;
-        t->filled[q] = 0;
-        t->still[q] = 0;                        /* if none is lifted */
-        demi_row_put(t->rows.tangent, q, demi_v(0, 0, 0));      /* if no law sets it */
-        t->rows.slope[0][q] = t->rows.slope[1][q] = t->rows.kt[1][q] = (dem_real)NAN;
-    }
-    if (r->ledger) memset(t->rows.part, 0, sizeof t->rows.part);
-}
-/* Appends contact c, which continues `old` with history `past` and has coefficients `row`, to a
-   tile. */
-DEM_INLINE void demi_kept_tile_add(demi_kept_tile *t, demi_kept *c, const demi_kept *old,
-                                   const dem_real *past, const demi_coefs_row *row) {
-    t->contact[t->count] = c;
-    t->past[t->count] = past;
-    t->row[t->count] = row;
-    t->old[t->count++] = old;
-    t->lifted |= demi_kept_lifted(c);
-    t->shaped |= !(row->m_eff > 0);
-}
 /* Evaluates all persistent contacts of a work group in list order. */
 static void demi_kept_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
     const demi_kept *now = demi_kept_of(w, d);
-    DEMI_ALIGNED demi_kept_tile tile;
-    demi_run run = demi_run_begin(w, dt);
+    DEMI_ALIGNED demi_points tile;
     int i, known;
     domain->kept_walls = 0;
     if (!domain->kept_next) return;
     known = demi_kept_rows_begin(w, d, domain->kept_next);
-    if (!w->desc.law) demi_run_laws(w, &run, 0);
-    demi_kept_tile_begin(&tile, &run, domain->kept_next + DEMI_LANES);
+    demi_kept_tile_begin(w, &tile, dt, domain->kept_next);
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const demi_kept *old = c->from < 0 ? c : now + c->from;
@@ -25476,12 +25493,12 @@ static void demi_kept_respond(dem_world *w, int d) {
             domain->kept_walls += c->b < 0;
             continue;
         }
-        demi_kept_tile_add(&tile, c, old, demi_kept_past(w, now, c),
-                           demi_kept_row(w, d, c, old, known && old != c));
+        demi_kept_add(&tile, c, old, demi_kept_past(w, now, c),
+                      demi_kept_row(w, d, c, old, known && old != c));
         demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
-        if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &run, &tile);
+        if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &tile);
     }
-    if (tile.count) demi_kept_tile_respond(w, d, &run, &tile);
+    if (tile.count) demi_kept_tile_respond(w, d, &tile);
 }
 /* Clears the slot of a candidate with a later work group: its contacts add to it. */
 static void demi_slot_clear(dem_world *w, int k) {
@@ -25520,58 +25537,45 @@ static void demi_cross_gather(dem_world *w, int d) {
    Contact forces between spheres that may be members of clusters (springs, effects.clustered). The
    pruned neighbour list then holds pairs of member spheres. A lone sphere is the only member of its
    body; pairs of two lone spheres come first in the list, and >>pairs computes them. Of the other
-   pairs, a step finds those that touch. These fill a tile with the relative motion of the two
-   spheres, which are points of their bodies, and the stages of >>respond evaluate the laws as for
-   lone spheres. Clusters differ in three ways: the effective mass at a contact depends on the
-   orientations of the bodies, contacts of the same two bodies may be merged (>>kept), and a force
-   acts at the centre of a member sphere. Writes the forces and contact histories of its pairs,
-   their slots, near.on and near.hit (which >>near also uses while it builds a list).
+   pairs, a step finds those that touch. These fill tiles of >>points; their histories are in the
+   list. Contacts of the same two bodies may be merged (>>kept). Writes the forces and histories of
+   its pairs, their slots, near.on and near.hit (which >>near also uses while it builds a list).
    --------------------------------------------------------------------------------------------- */
 
 /* Work of one group: a tile of contacts, which is evaluated when it is full. */
 typedef struct demi_member_tile {
-    demi_kept_tile t;              /* of these: rows, arm, spin, spun, share, grip, lift, still */
-    int32_t a[DEMI_TILE], b[DEMI_TILE], k[DEMI_TILE];      /* bodies; candidate */
+    demi_points t;
     int32_t p[DEMI_TILE];          /* entry in the pruned list of its work group */
-    int32_t ball[2][DEMI_TILE];    /* spheres */
-    dem_real inv[DEMI_ROOM], yield[2][6][DEMI_ROOM];       /* 1/kg, of both; as in demi_bodies */
-    demi_rows felt[2];             /* m, if any is merged: arms for effective masses */
-    dem_real base[5][DEMI_ROOM];   /* cn and ct without m*; their parts by root m*; m*, or 0 */
-    int merged[DEMI_TILE];         /* 1: with others of the same two bodies */
-    dem_vec3 at[2][DEMI_TILE], aside[DEMI_TILE];           /* of these: felt; see demi_kept_more */
-    demi_span span;                /* a, b and k, for stages that name bodies */
-    demi_run run, laws;            /* all stages; those of the laws only */
-    int count, weighted;           /* contacts; are any merged? */
+    unsigned char merged[DEMI_TILE];           /* 1: with others of the same two bodies */
+    dem_vec3 felt[2][DEMI_TILE];   /* of these: m, arms for effective masses */
 } demi_member_tile;
 
-/* Empties a tile and sets all its weights to 1. */
-static void demi_member_clear(demi_member_tile *m) {
+/* Sets all weights of a tile to 1. */
+static void demi_members_clear(demi_member_tile *m) {
     int q;
-    m->count = m->weighted = 0;
     for (q = 0; q < DEMI_TILE; q++) {
-        m->t.share[q] = m->t.grip[q] = 1;
+        m->t.share[q] = m->t.grip[q] = m->t.slope[q] = 1;
         m->t.lift[q] = 0;
-        m->merged[q] = 0;
+        m->t.raised[q] = m->merged[q] = 0;
     }
 }
 /* Appends entry p of the pruned list to a tile. c: its weights if it is merged with others of the
    same two bodies, or null. */
-DEM_INLINE void demi_member_add(demi_member_tile *m, int p, const demi_kept *c) {
-    const int q = m->count++;
+DEM_INLINE void demi_members_add(const dem_world *w, demi_member_tile *m, int p,
+                                 const demi_kept *c) {
+    const int q = m->t.count++;
     m->p[q] = p;
     if (!c) return;
-    m->t.share[q] = c->share;
-    m->t.grip[q] = c->grip;
-    m->t.lift[q] = c->lift - c->share;
-    m->merged[q] = 1;
-    m->at[0][q] = demi_sub(c->arm_a, demi_kept_felt(c));
-    m->at[1][q] = demi_sub(c->arm_b, demi_kept_felt(c));
-    m->aside[q] = c->odd ? c->more.aside : demi_v(0, 0, 0);
-    m->weighted = 1;
+    demi_points_weights(w, &m->t, q, c);
+    m->t.weighted = m->merged[q] = 1;
+    m->felt[0][q] = demi_sub(c->arm_a, demi_kept_felt(c));
+    m->felt[1][q] = demi_sub(c->arm_b, demi_kept_felt(c));
 }
-/* Fills the rows of a tile from its entries and the bodies. */
-DEM_INLINE void demi_member_fetch(const dem_world *w, demi_member_tile *DEMI_RESTRICT m,
-                                  size_t base, int full, int following) {
+/* Fills the rows of a tile from its entries and the bodies. Arms lead to the centres of the
+   spheres. send: 1 if forces on the bodies b go to slots. */
+DEM_INLINE void demi_members_fetch(const dem_world *w, demi_member_tile *DEMI_RESTRICT m, int d,
+                                   int full, int send, int following) {
+    const size_t base = (size_t)d*(size_t)w->near.stride;
     const int32_t *DEMI_RESTRICT near_a = w->near.a + base;
     const int32_t *DEMI_RESTRICT near_b = w->near.b + base;
     const int32_t *DEMI_RESTRICT ball_a = w->near.ball_a + base;
@@ -25582,46 +25586,45 @@ DEM_INLINE void demi_member_fetch(const dem_world *w, demi_member_tile *DEMI_RES
     const dem_real *DEMI_RESTRICT v = w->bodies.vel, *DEMI_RESTRICT u = w->bodies.half_vel;
     const dem_real *DEMI_RESTRICT s = w->bodies.spin, *DEMI_RESTRICT sh = w->bodies.half_spin;
     const dem_real *DEMI_RESTRICT inv = w->bodies.inv_mass, *DEMI_RESTRICT yield = w->bodies.yield;
-    demi_tile *DEMI_RESTRICT rows = &m->t.rows;
+    demi_points *DEMI_RESTRICT t = &m->t;
+    demi_tile *DEMI_RESTRICT rows = &t->rows;
     int n, e;
     for (n = 0; n < full; n++) {
         const size_t q = (size_t)n;
         const int p = m->p[n], a = near_a[p], b = near_b[p], i = ball_a[p], j = ball_b[p];
         const dem_real *x = ball + 4*i, *y = ball + 4*j;
-        m->a[n] = a; m->b[n] = b; m->k[n] = k[p];
-        m->ball[0][n] = i; m->ball[1][n] = j;
+        t->a[n] = a; t->b[n] = b; t->k[n] = send ? k[p] : -1;
         demi_rows_shifted(&rows->gap, q, y, x, w->image_shift + image[p]);
         rows->radius[0][n] = x[3];
         rows->radius[1][n] = y[3];
         demi_rows_minus(&rows->rate, q, v + 4*a, v + 4*b);
-        demi_rows_put(&m->t.arm[0], n, demi_at(arm + 4*i));
-        demi_rows_put(&m->t.arm[1], n, demi_at(arm + 4*j));
-        demi_rows_put(&m->t.spin[0], n, demi_at(s + 4*a));
-        demi_rows_put(&m->t.spin[1], n, demi_at(s + 4*b));
-        m->inv[n] = inv[a] + inv[b];
+        demi_rows_put(&t->arm[0], n, demi_at(arm + 4*i));
+        demi_rows_put(&t->arm[1], n, demi_at(arm + 4*j));
+        demi_rows_put(&t->spin[0], n, demi_at(s + 4*a));
+        demi_rows_put(&t->spin[1], n, demi_at(s + 4*b));
+        t->inv[n] = inv[a] + inv[b];
         DEMI_UNROLL
         for (e = 0; e < 6; e++) {
-            m->yield[0][e][n] = yield[6*a + e];
-            m->yield[1][e][n] = yield[6*b + e];
+            t->yield[0][e][n] = yield[6*a + e];
+            t->yield[1][e][n] = yield[6*b + e];
         }
         if (!following) continue;
         demi_rows_minus(&rows->gone, q, u + 4*a, u + 4*b);
-        demi_rows_put(&m->t.spun[0], n, demi_at(sh + 4*a));
-        demi_rows_put(&m->t.spun[1], n, demi_at(sh + 4*b));
+        demi_rows_put(&t->spun[0], n, demi_at(sh + 4*a));
+        demi_rows_put(&t->spun[1], n, demi_at(sh + 4*b));
     }
 }
 /* Copies the histories of a tile's entries. If the weight of friction grows, a spring keeps its
    force, as in demi_kept_past. */
-static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRICT m, int d,
-                               int full) {
-    const size_t stride = (size_t)w->near.stride;
+static void demi_members_recall(const dem_world *w, demi_member_tile *DEMI_RESTRICT m, int d,
+                                int full) {
     const int at_grip = w->laws.at_grip, keep = w->memory_stride;
+    dem_real *memory = w->near.memory + (size_t)d*(size_t)keep*m->t.hop;
     int e, q;
-    for (e = 0; e < keep; e++) {
-        const dem_real *DEMI_RESTRICT memory = w->near.memory +
-            ((size_t)d*(size_t)keep + (size_t)e)*stride;
-        for (q = 0; q < full; q++) m->t.rows.memory[e][q] = memory[m->p[q]];
-    }
+    for (e = 0; e < keep; e++)
+        for (q = 0; q < full; q++)
+            m->t.rows.memory[e][q] = memory[(size_t)e*m->t.hop + (size_t)m->p[q]];
+    for (q = 0; q < m->t.count && keep; q++) m->t.home[q] = memory + m->p[q];
     if (at_grip == DEMI_MEMORY) return;
     for (q = 0; q < full; q++) {
         const dem_real held = m->t.rows.memory[at_grip][q], now = m->t.grip[q];
@@ -25633,13 +25636,15 @@ static void demi_member_recall(const dem_world *w, demi_member_tile *DEMI_RESTRI
     }
 }
 /* Copies the coefficients that differ from pair to pair. first: all of them, for a whole tile. */
-static void demi_member_coefs(const dem_world *w, demi_member_tile *m, int d, int full, int first) {
+static void demi_members_coefs(const dem_world *w, demi_member_tile *m, int d, int full,
+                               int first) {
     const size_t stride = (size_t)w->near.stride, base = (size_t)d*stride;
     int e, q;
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
-        dem_real *to = e == DEMI_CN ? m->base[0] : e == DEMI_CT ? m->base[1]
-            : e == DEMI_CN_ROOT ? m->base[2] : e == DEMI_CT_ROOT ? m->base[3]
-            : e == DEMI_M_EFF ? m->base[4] : m->t.rows.coef[e];
+        dem_real *to = e == DEMI_M_EFF ? m->t.known
+            : e >= DEMI_CN_ROOT ? m->t.root[e - DEMI_CN_ROOT]
+            : e == DEMI_KN || e == DEMI_CN || e == DEMI_CT || e >= DEMI_K_UN ? m->t.base[e]
+            : m->t.rows.coef[e];
         const dem_real *own = demi_many_species(w) ? w->near.coef +
             (base*DEMI_PAIR_COLUMNS + (size_t)e*stride) : 0;
         const dem_real *table = w->species_coef + e;
@@ -25661,177 +25666,98 @@ DEM_INLINE dem_vec3 demi_arm_mid(dem_vec3 c, dem_vec3 h) {
     const dem_vec3 turned = demi_add(demi_sub(c, demi_cross(h, c)), demi_scale(h, demi_dot(h, c)));
     return demi_scale(turned, 1/(1 + demi_dot(h, h)));
 }
-/* Turns the relative motion of two bodies into that of the centres of two of their spheres, and
-   sets sums and differences of spins. */
-DEM_INLINE void demi_member_swing_one(demi_member_tile *DEMI_RESTRICT m, dem_real half, int q,
-                                      int following) {
-    demi_tile *rows = &m->t.rows;
-    const dem_vec3 one = demi_rows_at(&m->t.arm[0], q), other = demi_rows_at(&m->t.arm[1], q);
-    const dem_vec3 wa = demi_rows_at(&m->t.spin[0], q), wb = demi_rows_at(&m->t.spin[1], q);
-    demi_rows_put(&rows->rate, q, demi_add(demi_rows_at(&rows->rate, q),
-                                           demi_sub(demi_cross(wa, one), demi_cross(wb, other))));
-    demi_rows_put(&rows->around, q, demi_add(wa, wb));
-    demi_rows_put(&rows->apart, q, demi_sub(wa, wb));
+/* Finds the contact of row q, and moves the arms from the centres of the spheres to it. */
+DEM_INLINE void demi_member_meet(demi_points *DEMI_RESTRICT t, const demi_same *s, int q,
+                                 int following, int ranged) {
+    demi_tile *rows = &t->rows;
+    const dem_vec3 one = demi_rows_at(&t->arm[0], q), other = demi_rows_at(&t->arm[1], q);
+    dem_real ra, rb;
+    dem_vec3 n, a, b;
+    demi_touch_one(rows, s, q, 0, ranged);
+    n = demi_row(rows->normal, q);
+    ra = rows->length[q]/2 + rows->lean[q];
+    rb = rows->length[q]/2 - rows->lean[q];
+    a = demi_add(one, demi_scale(n, ra));
+    b = demi_sub(other, demi_scale(n, rb));
+    demi_rows_put(&t->arm[0], q, a);
+    demi_rows_put(&t->arm[1], q, b);
+    demi_rows_put(&t->felt[0], q, a);
+    demi_rows_put(&t->felt[1], q, b);
+    rows->length[q] = rows->lean[q] = 0;
     if (following) {
-        const dem_vec3 sa = demi_rows_at(&m->t.spun[0], q), sb = demi_rows_at(&m->t.spun[1], q);
-        const dem_vec3 ma = demi_arm_mid(one, demi_scale(sa, half));
-        const dem_vec3 mb = demi_arm_mid(other, demi_scale(sb, half));
-        demi_rows_put(&rows->gone, q, demi_add(demi_rows_at(&rows->gone, q),
-                                               demi_sub(demi_cross(sa, ma), demi_cross(sb, mb))));
-        demi_rows_put(&rows->turned, q, demi_add(sa, sb));
-        demi_rows_put(&rows->parted, q, demi_sub(sa, sb));
+        const dem_vec3 sa = demi_rows_at(&t->spun[0], q), sb = demi_rows_at(&t->spun[1], q);
+        const dem_vec3 ma = demi_arm_mid(one, demi_scale(sa, s->dt/2));
+        const dem_vec3 mb = demi_arm_mid(other, demi_scale(sb, s->dt/2));
+        const dem_vec3 gone = demi_add(demi_rows_at(&rows->gone, q),
+                                       demi_sub(demi_cross(sa, ma), demi_cross(sb, mb)));
+        const dem_vec3 way = demi_scale(demi_sub(gone, demi_scale(n, demi_dot(gone, n))),
+                                        -s->dt*rows->over_d[q]);
+        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
+        demi_row_put(rows->turn, q, way);
+        demi_rows_put(&t->mid[0], q, demi_add(ma, demi_scale(mid, ra)));
+        demi_rows_put(&t->mid[1], q, demi_sub(mb, demi_scale(mid, rb)));
     }
 }
-DEMI_CLONES static void demi_member_swing(demi_member_tile *DEMI_RESTRICT m, dem_real half,
-                                          int full) {
-    DEMI_ROWS(full) demi_member_swing_one(m, half, q, 0); DEMI_ROWS_END
-}
-DEMI_CLONES static void demi_member_swing_following(demi_member_tile *DEMI_RESTRICT m,
-                                                    dem_real half, int full) {
-    DEMI_ROWS(full) demi_member_swing_one(m, half, q, 1); DEMI_ROWS_END
-}
-/* Returns (c x n).W (c x n), 1/kg, with arm c, the normal n of row q and inverse inertia W. */
-DEM_INLINE dem_real demi_member_give(dem_vec3 c, dem_vec3 n, dem_real W[6][DEMI_ROOM], int q) {
-    const dem_vec3 v = demi_cross(c, n);
-    return W[0][q]*v.x*v.x + W[1][q]*v.y*v.y + W[2][q]*v.z*v.z +
-        2*(W[3][q]*v.x*v.y + W[4][q]*v.x*v.z + W[5][q]*v.y*v.z);
-}
-/* Effective mass at each contact, kg, unless known, and the part of the damping that depends on
-   it. felt: m, arms of both sides. */
-DEMI_CLONES static void demi_member_mass(demi_member_tile *DEMI_RESTRICT m, const demi_rows *felt,
-                                         int full) {
-    DEMI_ROWS(full)
-        const dem_vec3 n = demi_row(m->t.rows.normal, q);
-        const dem_real give = m->inv[q] +
-            demi_member_give(demi_rows_at(&felt[0], q), n, m->yield[0], q) +
-            demi_member_give(demi_rows_at(&felt[1], q), n, m->yield[1], q);
-        const dem_real known = m->base[4][q], mass = known > 0 ? known : 1/(give + DEMI_TINY);
-        const dem_real root = DEMI_SQRT(mass);
-        m->t.rows.coef[DEMI_M_EFF][q] = mass;
-        m->t.rows.coef[DEMI_CN][q] = m->base[0][q] + m->base[2][q]*root;
-        m->t.rows.coef[DEMI_CT][q] = m->base[1][q] + m->base[3][q]*root;
-    DEMI_ROWS_END
-}
-/* Multiplies forces, moments and energies by their weights, see demi_kept_book. */
-DEMI_CLONES static void demi_member_weigh(demi_kept_tile *DEMI_RESTRICT t, int full) {
-    demi_tile *rows = &t->rows;
-    DEMI_ROWS(full)
-        const dem_real share = t->share[q], grip = t->grip[q];
-        rows->repulsion[q] = share*rows->repulsion[q] + t->lift[q]*t->still[q];
-        demi_row_put(rows->tangent, q, demi_scale(demi_row(rows->tangent, q), grip));
-        demi_row_put(rows->moment, q, demi_scale(demi_row(rows->moment, q), grip));
-        rows->part[0][q] *= share; rows->part[1][q] *= share; rows->part[6][q] *= share;
-        rows->part[2][q] *= grip; rows->part[3][q] *= grip;
-        rows->part[4][q] *= grip; rows->part[5][q] *= grip;
-    DEMI_ROWS_END
-}
+#define DEMI_MEMBER_STAGE(NAME, FOLLOWING, RANGED) \
+    DEMI_CLONES static void NAME(demi_points *DEMI_RESTRICT t, int full) { \
+        const demi_same s = t->run.same; \
+        DEMI_ROWS(full) demi_member_meet(t, &s, q, FOLLOWING, RANGED); DEMI_ROWS_END \
+    }
+DEMI_MEMBER_STAGE(demi_members_meet, 0, 0)
+DEMI_MEMBER_STAGE(demi_members_meet_following, 1, 0)
+DEMI_MEMBER_STAGE(demi_members_meet_ranged, 1, 1)
+#undef DEMI_MEMBER_STAGE
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
-/* Calls the user-defined law for each contact of a tile, first at rest for merged contacts. */
-static void demi_member_law(const dem_world *w, demi_member_tile *m) {
-    const demi_same same = m->run.same;
-    dem_contact c;
-    int q, rests;
-    demi_who_clear(&c.who);
-    for (q = 0; q < m->count; q++)
-        for (rests = m->merged[q]; rests >= 0; rests--) {
-            demi_tile_own(&m->t.rows, &m->run, &same, q, w->desc.law_who, &c);
-            demi_row_law(w, &m->t.rows, &m->run, q, &c, rests ? &m->t.still[q] : 0);
-        }
-}
-/* Evaluates the contacts of a tile: forces and torques about the centres of the spheres. */
-static void demi_member_evaluate(const dem_world *w, demi_member_tile *m, int d) {
-    const int full = (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    const size_t base = (size_t)d*(size_t)w->near.stride;
-    demi_run *r = &m->run;
-    demi_tile *rows = &m->t.rows;
-    int k, q;
-    m->span.count = m->count;
-    r->span = &m->span;
-    for (q = m->count; q < full; q++) {         /* the last vector group is padded with copies */
-        m->p[q] = m->p[m->count - 1];
-        m->t.grip[q] = 1;
+/* Evaluates the contacts of a tile. send: 1 if the bodies b are of later work groups. */
+static void demi_members_evaluate(const dem_world *w, demi_member_tile *m, int d, int send) {
+    const int full = (m->t.count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_points *t = &m->t;
+    int q, k;
+    for (q = t->count; q < full; q++) {         /* the last vector group is padded with copies */
+        m->p[q] = m->p[t->count - 1];
+        t->grip[q] = 1;
     }
-    if (r->following) demi_member_fetch(w, m, base, full, 1);
-    else demi_member_fetch(w, m, base, full, 0);
+    if (t->run.following) demi_members_fetch(w, m, d, full, send, 1);
+    else demi_members_fetch(w, m, d, full, send, 0);
     for (q = 0; q < full && w->cell.on; q++) {
-        const dem_vec3 branch = demi_tile_branch(rows, &m->span, q);
-        demi_rows_flow(w, &rows->rate, q, branch);
-        if (r->following) demi_rows_flow(w, &rows->gone, q, branch);
+        const dem_vec3 branch = demi_add(demi_rows_at(&t->rows.gap, q),
+            demi_sub(demi_rows_at(&t->arm[0], q), demi_rows_at(&t->arm[1], q)));
+        demi_rows_flow(w, &t->rows.rate, q, branch);
+        if (t->run.following) demi_rows_flow(w, &t->rows.gone, q, branch);
     }
-    demi_member_recall(w, m, d, full);
-    demi_member_coefs(w, m, d, full, 0);
-    for (q = 0; q < full && m->weighted; q++)
-        for (k = 0; k < 2; k++)
-            demi_rows_put(&m->felt[k], q, q < m->count && m->merged[q] ? m->at[k][q]
-                          : demi_rows_at(&m->t.arm[k], q));
-    (r->following ? demi_member_swing_following : demi_member_swing)(m, r->same.dt/2, full);
-    r->stage[0](rows, r, full);                 /* contact detection and relative motion */
-    demi_member_mass(m, m->weighted ? m->felt : m->t.arm, full);
-    if (!m->weighted) {
-        for (k = 1; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](rows, r, full);
-        return;
-    }
-    for (q = 0; q < full; q++) m->t.still[q] = 0;
-    if (w->desc.law) demi_member_law(w, m);
-    else {
-        demi_kept_still(&m->t, &m->laws, full);
-        for (k = 0; k < DEMI_STAGES && m->laws.stage[k]; k++)
-            m->laws.stage[k](rows, &m->laws, full);
-    }
-    demi_member_weigh(&m->t, full);
-    demi_answer_choose(r, demi_laws_roll(w))(rows, r, full);
-    for (q = 0; q < m->count; q++)              /* at the centre of the sphere: no torque */
-        if (m->merged[q]) demi_row_put(rows->force, q, demi_add(demi_row(rows->force, q),
-                                              demi_scale(m->aside[q], m->t.still[q])));
+    demi_members_recall(w, m, d, full);
+    demi_members_coefs(w, m, d, full, 0);
+    (t->run.ranged ? demi_members_meet_ranged : t->run.following ? demi_members_meet_following
+        : demi_members_meet)(t, full);
+    for (q = 0; q < t->count && t->weighted; q++)
+        for (k = 0; k < 2 && m->merged[q]; k++) demi_rows_put(&t->felt[k], q, m->felt[k][q]);
+    t->turns = 1;
+    demi_points_evaluate(w, t);
 }
 /* Prepares an empty tile for work group d. dt 0: forces only, history does not advance. */
-static void demi_member_begin(const dem_world *w, demi_member_tile *m, int d, dem_real dt) {
-    m->run = demi_run_of(w, dt, 0);
-    m->laws = demi_run_begin(w, dt);
-    if (!w->desc.law) demi_run_laws(w, &m->laws, 0);
-    m->span.a = m->a;
-    m->span.b = m->b;
-    m->span.k = m->k;
-    m->span.ball = m->ball[0];
-    m->span.share = m->t.share;
-    m->span.arm = m->t.arm;
-    demi_member_clear(m);
-    demi_tile_begin(w, d, &m->t.rows);
-    m->p[0] = demi_near_first(&w->domains[d]);
-    demi_member_coefs(w, m, d, DEMI_TILE, 1);
-    memset(m->t.rows.moment, 0, sizeof m->t.rows.moment);
-}
-/* Turns the torques of a tile about the centres of its spheres into those on the bodies. */
-DEMI_CLONES static void demi_member_torques(demi_member_tile *DEMI_RESTRICT m, int turning,
-                                            int full) {
-    demi_tile *rows = &m->t.rows;
-    if (!turning) memset(rows->torque, 0, sizeof rows->torque);
-    DEMI_ROWS(full)
-        const dem_vec3 f = demi_row(rows->force, q);
-        demi_row_put(rows->torque[0], q, demi_add(demi_row(rows->torque[0], q),
-                                                  demi_cross(demi_rows_at(&m->t.arm[0], q), f)));
-        demi_row_put(rows->torque[1], q, demi_sub(demi_row(rows->torque[1], q),
-                                                  demi_cross(demi_rows_at(&m->t.arm[1], q), f)));
-    DEMI_ROWS_END
-}
-/* Evaluates a tile, adds its forces to both bodies and stores its histories. send: 1 if the bodies
-   b are of later work groups, so that forces on them go to slots. */
-static void demi_member_respond(dem_world *w, demi_member_tile *m, int d, int send) {
-    const size_t stride = (size_t)w->near.stride;
-    int q, e;
-    if (!m->count) return;
-    demi_member_evaluate(w, m, d);
-    demi_member_torques(m, m->run.turning, (m->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES);
-    for (e = 0; e < m->run.keep; e++) {
-        dem_real *memory = w->near.memory + ((size_t)d*(size_t)w->memory_stride + (size_t)e)*stride;
-        for (q = 0; q < m->count; q++) memory[m->p[q]] = m->t.rows.memory[e][q];
+static void demi_members_begin(const dem_world *w, demi_member_tile *m, int d, dem_real dt) {
+    int q;
+    demi_points_begin(w, &m->t, dt, DEMI_TILE);
+    demi_members_clear(m);
+    m->t.hop = (size_t)w->near.stride;
+    for (q = 0; q < DEMI_TILE; q++) {
+        m->t.contact[q] = 0;
+        m->t.couple[q] = 0;
+        demi_rows_put(&m->t.outset, q, demi_v(0, 0, 0));
     }
-    demi_tile_finish(w, d, &m->t.rows, &m->span, &m->run, send,
-                     w->events.n.on ? demi_tile_note : 0);
-    if (m->weighted) demi_member_clear(m);
-    m->count = 0;
+    m->p[0] = demi_near_first(&w->domains[d]);
+    demi_members_coefs(w, m, d, DEMI_TILE, 1);
+}
+/* Evaluates a tile, adds its forces to both bodies and stores its histories. */
+static void demi_members_respond(dem_world *w, demi_member_tile *m, int d, int send) {
+    const int weighted = m->t.weighted;
+    if (!m->t.count) return;
+    demi_members_evaluate(w, m, d, send);
+    demi_tile_tally(&m->t.rows, m->t.count, m->t.run.ranged, &w->domains[d]);
+    demi_points_finish(w, d, &m->t);
+    if (weighted) demi_members_clear(m);
 }
 /* Computes the weights of n contacts of work group d, of pairs of spheres of the same two bodies,
    into w->merging. hit: their entries. Returns them. */
@@ -25882,9 +25808,9 @@ static int demi_members_touch(dem_world *w, int d, int p, int end, int32_t *hit)
     }
     return n;
 }
-/* Computes all pairs of a work group: those of lone spheres (by >>pairs), then the others, first
-   those inside the group, then those with later groups. */
-static void demi_pairs_members(dem_world *w, int d) {
+/* Computes the pairs of a work group that are not of two lone spheres: first those inside the
+   group, then those with later groups. */
+static void demi_members_pairs(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
     const int merges = w->laws.at_grip < DEMI_MEMORY;
@@ -25892,10 +25818,9 @@ static void demi_pairs_members(dem_world *w, int d) {
     int32_t *hit = w->near.hit + d*w->near.stride;
     DEMI_ALIGNED demi_member_tile m;
     int l, p, n, run, i;
-    demi_pairs_with(w, d, w->events.n.on ? demi_tile_note : 0);
     if (domain->near_own <= domain->near_lone[0] &&
         domain->near_end <= domain->near_cross + domain->near_lone[1]) return;
-    demi_member_begin(w, &m, d, dt);
+    demi_members_begin(w, &m, d, dt);
     for (l = 0; l < 2; l++) {
         const int begin = (l ? domain->near_cross : 0) + domain->near_lone[l];
         const int end = l ? domain->near_end : domain->near_own;
@@ -25907,11 +25832,11 @@ static void demi_pairs_members(dem_world *w, int d) {
             for (run = 1; merges && p + run < n && k[hit[p + run]] == k[hit[p]];) run++;
             if (run > 1) c = demi_members_merge(w, d, hit + p, run);
             for (i = 0; i < run; i++) {
-                demi_member_add(&m, hit[p + i], c ? c + i : 0);
-                if (m.count == DEMI_TILE) demi_member_respond(w, &m, d, l);
+                demi_members_add(w, &m, hit[p + i], c ? c + i : 0);
+                if (m.t.count == DEMI_TILE) demi_members_respond(w, &m, d, l);
             }
         }
-        demi_member_respond(w, &m, d, l);
+        demi_members_respond(w, &m, d, l);
     }
 }
 /* True if the spheres of entry `at` touch, or are within the range of the law. */
@@ -25942,9 +25867,9 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
     if (n > 1) c = demi_members_merge(w, d, hit, n);
     demi_balls_place(w, w->near.a[base + (size_t)p], w->near.a[base + (size_t)p] + 1);
     demi_balls_place(w, w->near.b[base + (size_t)p], w->near.b[base + (size_t)p] + 1);
-    demi_member_begin(w, &m, d, 0);
-    demi_member_add(&m, p, c ? c + at : 0);
-    demi_member_evaluate(w, &m, d);
+    demi_members_begin(w, &m, d, 0);
+    demi_members_add(w, &m, p, c ? c + at : 0);
+    demi_members_evaluate(w, &m, d, 0);
     out->normal = demi_row(m.t.rows.normal, 0);
     out->overlap = m.t.rows.overlap[0];
     out->force = demi_row(m.t.rows.force, 0);
@@ -31060,14 +30985,13 @@ static dem_result demi_rails_whole(dem_world *w, const char *call) {
 /* Evaluates a tile of contacts with a wall, adds `sign` times their forces to those of the grains,
    and updates the half-step velocities of these grains. Contact histories do not change. Empties
    the tile. */
-static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
+static void demi_steer_tile(dem_world *w, demi_points *t, dem_real sign) {
     int q;
-    demi_kept_tile_answer(w, r, t);
+    demi_kept_evaluate(w, t);
     for (q = 0; q < t->count; q++) {
         demi_kept *c = t->contact[q];
         dem_vec3 force, torque;
-        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        c->force = demi_kept_own(t, q, &torque);
+        c->force = demi_point_own(t, q, &torque);
         force = demi_row(t->rows.force, q);
         torque = demi_row(t->rows.torque[0], q);
         if (w->desc.planar) force.z = torque.x = torque.y = 0;
@@ -31075,24 +30999,23 @@ static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, 
         demi_force_add(w->bodies.torque + 4*c->a, demi_scale(torque, sign));
         if (w->stage.primed) demi_prime_body(w, c->a);
     }
-    t->count = t->lifted = t->shaped = 0;
+    t->count = t->turns = t->weighted = t->lifted = 0;
 }
 /* Adds `sign` times the forces of all contacts with a wall to those of the grains. */
 static void demi_steer(dem_world *w, int wall, dem_real sign) {
-    DEMI_ALIGNED demi_kept_tile tile;
-    demi_run run = demi_run_begin(w, 0);
+    DEMI_ALIGNED demi_points tile;
     int d, k, known;
-    if (!w->desc.law) demi_run_laws(w, &run, 0);
-    demi_kept_tile_begin(&tile, &run, DEMI_TILE);
+    demi_kept_tile_begin(w, &tile, 0, DEMI_TILE);
     for (d = 0; d < w->domain_count; d++) {
         known = demi_kept_rows_begin(w, d, w->domains[d].kept);
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
-            demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
-            if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
+            if (w->bodies.shaped) demi_yields_turn(w, c->a, c->a + 1);
+            demi_kept_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
+            if (tile.count == DEMI_TILE) demi_steer_tile(w, &tile, sign);
         }
-        if (tile.count) demi_steer_tile(w, &run, &tile, sign);
+        if (tile.count) demi_steer_tile(w, &tile, sign);
         if (!known) w->domains[d].coefs = 0;    /* other contacts have no row yet */
     }
 }
@@ -32491,17 +32414,11 @@ static void demi_due_book(dem_world *w) {
    w->desc.response; DEMI_RESPONSES in >>layout lists the rows and their traits. Whoever reads the
    contacts of a world walks over them (demi_walk), so that all see the same ones. Owns no data.
    --------------------------------------------------------------------------------------------- */
-/* Sets the force loop for the laws in force. Returns its name in reports. */
-static const char *demi_kernel_choose(dem_world *w) {
-    w->kernel = w->effects.clustered ? demi_pairs_members
-        : w->events.n.on ? demi_pairs_noted : demi_pairs;
-    if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
-    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
-}
-/* Springs: computes the forces of all contacts that domain d owns: first pairs of spheres, by the
-   kernel of the laws in force, then persistent contacts. */
+/* Springs: computes the forces of all contacts that domain d owns: first pairs of lone spheres,
+   then those of member spheres, then persistent contacts. */
 static void demi_springs(dem_world *w, int d) {
-    w->kernel(w, d);
+    demi_pairs(w, d);
+    if (w->effects.clustered) demi_members_pairs(w, d);
     demi_kept_clear(w, d);
     demi_kept_respond(w, d);
 }
@@ -33912,10 +33829,7 @@ static int demi_events_copy(dem_world *to, const dem_world *from) {
 static void demi_events_switch(dem_world *w, int on) {
     int k;
     w->events.n.on = on;
-    for (k = 0; k < demi_members(w); k++) {
-        demi_member(w, k)->events.n.on = on;
-        demi_kernel_choose(demi_member(w, k));
-    }
+    for (k = 0; k < demi_members(w); k++) demi_member(w, k)->events.n.on = on;
 }
 /* Ends a recording for lack of memory; demi_events_tell reports it. */
 static void demi_events_fail(dem_world *w) {
@@ -34831,7 +34745,6 @@ static dem_result demi_member_prime(dem_world *w) {
 /* Run before and after forces are computed without a step. forces_valid = 0 makes contact histories
    stay as they are. */
 static dem_result demi_member_look(dem_world *w) {
-    demi_kernel_choose(w);
     w->stage.forces_valid = 0;
     return DEM_OK;
 }
@@ -34922,11 +34835,7 @@ static dem_result demi_step_lose(dem_world *h) {
 }
 /* Builds the neighbour lists of all members. */
 static dem_result demi_all_rebuild(dem_world *h) {
-    dem_result result;
-    if (h->team) return h->team->rebuild(h);
-    result = demi_rebuild(h, "dem_world_step");
-    if (result == DEM_OK) demi_kernel_choose(h);
-    return result;
+    return h->team ? h->team->rebuild(h) : demi_rebuild(h, "dem_world_step");
 }
 /* Computes all forces: 3 touch, 4 respond, 5 gather. near: 1 if pruned lists may be due. Lists of
    contacts of spheres always have room (demi_kept_room). With other shapes the members first agree
@@ -40822,7 +40731,6 @@ static int demi_twin_follow(dem_world *t) {
     demi_image_shifts(t);
     demi_walls_repeat(t);
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
-    demi_kernel_choose(t);
     if (!t->stage.list_valid) return 1;
     if (!demi_walled_note(t)) return 0;
     if (!t->stage.pairs_changed) demi_species_lay(t);
@@ -43719,7 +43627,7 @@ static void demi_report(const dem_world *world, FILE *out) {
                    ? "differ (coefficients per neighbour pair)"
                    : "of few species (coefficients per pair of species)", walls,
                w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
-               demi_kernel_choose(w));
+               demi_stages_name(w));
     demi_idle_report(w, out);
     demi_print(out, "overlap    %.3g of the radius at most so far%s%s\n", w->booked.overlap_max,
                w->booked.crushed.next > 0 ? ", above 0.05 " : "",
@@ -44580,7 +44488,6 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     if (s->count > 1) w->desc.skin = s->head.margin.skin > 0 ? (dem_real)s->head.margin.skin : -1;
     b->result = demi_rebuild(w, "dem_world_step");
     if (b->result != DEM_OK) return;
-    demi_kernel_choose(w);
     for (i = 0; i < b->ghost_count; i++) b->ghost[i] = w->bodies.slot_index[b->ghost[i]];
     for (i = 0; i < b->lent_count; i++) b->lent[i] = w->bodies.slot_index[b->lent[i]];
     b->work = 4.0*w->bodies.count;
@@ -45437,7 +45344,6 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         w->bodies.balance.removed = s->head.bodies.balance.removed;
         if (w->events.n.on && !s->head.events.n.on) demi_events_start(w);
         demi_effects(w);                        /* the world itself may never have been stepped */
-        demi_kernel_choose(w);
     }
     demi_called(w, was[1]);
     demi_called(&s->head, was[0]);

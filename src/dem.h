@@ -63,8 +63,10 @@
      contact/ - contacts and their forces, by shapes
        >>touch             narrow phase: candidates to contacts, geometry only
        >>respond           stages from rows of contacts of spheres to forces and torques
-       >>pairs             user-defined laws; the loop over the pruned neighbour list
+       >>choose            which stages a scene needs; user-defined laws
        >>noted             notes of the contacts of a step, for events
+       >>finish            what contacts give to bodies, walls, ledger, cell and events
+       >>pairs             lone spheres: the loop over the pruned neighbour list
        >>polyhedra         overlap of two polyhedra, or of one and a wall
        >>gaps              distance between polyhedra, and their contact points
        >>on-walls          contacts of spheres and ellipsoids with walls
@@ -78,7 +80,8 @@
        >>meet-tables       functions by shape and by wall; contact geometry on a wall
        >>continued         which contact of the step before a persistent contact continues
        >>kept              contacts with walls and of other shapes: persistent contacts
-       >>kept-respond      persistent contacts to forces and torques on both bodies
+       >>points            contacts at points of bodies to forces and torques
+       >>kept-respond      persistent contacts: coefficients and histories
        >>members           contacts of spheres that may be members of clusters
      impulse/ - rigid grains: constraints, joints, solvers
        >>impulses          rigid grains: the contacts and constraints of a step
@@ -252,8 +255,10 @@
 #include "search/rebuild.h"
 #include "contact/touch.h"
 #include "contact/respond.h"
-#include "contact/pairs.h"
+#include "contact/choose.h"
 #include "contact/noted.h"
+#include "contact/finish.h"
+#include "contact/pairs.h"
 #ifndef DEM_NO_POLYHEDRA
 #include "contact/polyhedra.h"
 #include "contact/gaps.h"
@@ -275,6 +280,7 @@
 #include "contact/meet-tables.h"
 #include "contact/continued.h"
 #include "contact/kept.h"
+#include "contact/points.h"
 #include "contact/kept-respond.h"
 #include "contact/members.h"
 #ifndef DEM_NO_IMPULSES

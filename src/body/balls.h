@@ -3,7 +3,8 @@
    The spheres of which bodies consist: members of clusters, and lone spheres, each the only member
    of its body. They have two forms: as seen from the body's centre (bodies.centre), rotated with
    the body in each step; and, where forces need it (effects.clustered), as points in space
-   (bodies.ball), with the inverse inertia of their bodies (bodies.yield). This part owns all three.
+   (bodies.ball). This part owns both, and the inverse inertia of bodies in space (bodies.yield),
+   which forces at points of bodies need.
    --------------------------------------------------------------------------------------------- */
 
 /* A tile of bodies in their orientations, as a structure of arrays. */
@@ -88,9 +89,9 @@ static int demi_centres_lay(dem_world *w) {
     }
     start[i] = n;
     if (!DEMI_GROW(w, w->bodies.centre, 4*((size_t)n + 1)) ||
-        (w->effects.clustered && (!DEMI_GROW(w, w->bodies.ball, 4*((size_t)n + 1)) ||
-                                  !DEMI_GROW(w, w->bodies.yield, 6*(size_t)w->bodies.count + 1))))
-        return 0;
+        !DEMI_GROW(w, w->bodies.yield, 6*(size_t)w->bodies.count + 1) ||
+        (w->effects.clustered && !DEMI_GROW(w, w->bodies.ball, 4*((size_t)n + 1)))) return 0;
+    memset(w->bodies.yield, 0, 6*(size_t)w->bodies.count*sizeof(dem_real));
     w->bodies.centres_valid = 1;
     for (i = 0; i < w->bodies.count; i++) {
         dem_real *lone = w->bodies.centre + 4*start[i];
@@ -107,11 +108,13 @@ static int demi_centres_lay(dem_world *w) {
     return 1;
 }
 /* Computes the inverse inertia in space (bodies.yield) of bodies begin .. end - 1, at most a
-   tile. */
+   tile. That of spheres is 0 from demi_centres_lay on. */
 static void demi_yields_turn(const dem_world *w, int begin, int end) {
     const int count = end - begin, full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     demi_frames f;
-    int l, e;
+    int l, e, shaped = 0;
+    for (l = begin; l < end; l++) shaped |= demi_shape_of(w, l) != 0;
+    if (!shaped) return;
     for (l = 0; l < full; l++) {
         const int i = begin + DEMI_MIN(l, count - 1);
         const int turns = demi_shape_of(w, i) && w->bodies.inv_mass[i] > 0;
@@ -124,15 +127,15 @@ static void demi_yields_turn(const dem_world *w, int begin, int end) {
     for (l = 0; l < count; l++)
         for (e = 0; e < 6; e++) w->bodies.yield[6*(begin + l) + e] = f.W[e][l];
 }
-/* Sets the spheres of bodies begin .. end - 1 in space, and what their contacts need of the bodies
-   (bodies.ball, bodies.yield). */
+/* Sets what contacts need of bodies begin .. end - 1 in their present orientations: bodies.yield
+   and, with effects.clustered, the spheres in space. */
 static void demi_balls_place(const dem_world *w, int begin, int end) {
     int i, k, e;
     for (i = begin; i < end; i++) {
         const dem_real *x = w->bodies.pos + 4*i;
         const int first = w->bodies.centre_start[i], last = w->bodies.centre_start[i + 1];
         if ((i - begin) % DEMI_TILE == 0) demi_yields_turn(w, i, DEMI_MIN(i + DEMI_TILE, end));
-        for (k = first; k < last; k++) {
+        for (k = first; k < last && w->effects.clustered; k++) {
             const dem_real *arm = w->bodies.centre + 4*k;
             dem_real *ball = w->bodies.ball + 4*k;
             DEMI_UNROLL

@@ -754,7 +754,8 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     own.old = own.after = cross.old = cross.after = old;
     domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
-    if (w->effects.clustered) demi_balls_place(w, domain->begin, domain->end);
+    if (w->effects.clustered || (w->bodies.shaped && demi_response_is(w, DEMI_LAWS)))
+        demi_balls_place(w, domain->begin, domain->end);
     for (; !(domain->overflow & 16); old = old_end) {
         while (k < walls && gap[k] > gone) k++; /* not close enough yet */
         a = k < walls ? body[k] : INT_MAX;

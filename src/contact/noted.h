@@ -47,12 +47,13 @@ DEM_INLINE demi_noted_at *demi_note(dem_world *w, int d, int a, int b, int kind,
 static dem_vec3 demi_note_arm(dem_vec3 normal, dem_real radius, dem_real distance, dem_real radii) {
     return demi_scale(normal, radius*distance/radii);
 }
-/* Notes the contacts of a tile of work group d: spheres, also those of clusters. */
+/* Notes the contacts of a tile of work group d. */
 static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *span,
                            const demi_run *r) {
     int q, k;
     for (q = 0; q < span->count; q++) {
-        const int old = t->overlap[q] - t->closing[q]*r->same.dt > 0;
+        const demi_kept *c = span->points ? span->points->contact[q] : 0;
+        const int old = c ? c->from >= 0 : t->overlap[q] - t->closing[q]*r->same.dt > 0;
         const dem_vec3 normal = demi_row(t->normal, q);
         double energy[DEMI_E_ROLL + 1];
         demi_noted_at *at;
@@ -60,16 +61,11 @@ static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *s
         energy[DEMI_E_DASHPOT] = (double)(t->part[0][q] + t->part[6][q]);
         for (k = DEMI_E_ELASTIC; k <= DEMI_E_ROLL; k++) energy[k] = (double)t->part[k][q];
         at = demi_note(w, d, span->a[q], span->b[q],
-                       old*DEMI_NOTED_OLD | !span->ball*DEMI_NOTED_SPHERES, t->overlap[q] > 0,
-                       -demi_dot(demi_row(t->force, q), normal), energy);
-        if (at && span->ball) {
-            const int ball = span->ball[q];
-            at->normal = normal;
-            at->arm = demi_add(demi_at(w->bodies.centre + 4*ball), demi_note_arm(normal,
-                w->bodies.centre[4*ball + 3], t->length[q], t->length[q] + t->overlap[q]));
-            at->shift = demi_v(0, 0, 0);
-        }
+                       old*DEMI_NOTED_OLD | !span->points*DEMI_NOTED_SPHERES, t->overlap[q] > 0,
+                       -demi_dot(c ? c->force : demi_row(t->force, q), normal), energy);
+        if (!at || !span->points) continue;
+        at->normal = normal;
+        at->arm = demi_rows_at(&span->points->arm[0], q);
+        at->shift = c ? c->shift : demi_v(0, 0, 0);
     }
 }
-/* The force loop of spheres while events are recorded. */
-static void demi_pairs_noted(dem_world *w, int d) { demi_pairs_with(w, d, demi_tile_note); }

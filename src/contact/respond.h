@@ -5,7 +5,7 @@
    is cheaper than three gathers). Then stages run over the rows, one after the other: contact
    detection, relative motion, normal law, friction, rolling, force and torques. They work on vector
    groups of constant length, which compilers vectorise at -O2 too. The most common combinations of
-   laws have one stage for all laws, which avoids the rows in between. >>pairs chooses the stages.
+   laws have one stage for all laws, which avoids the rows in between. >>choose chooses the stages.
    --------------------------------------------------------------------------------------------- */
 /* Sums and differences are of the two bodies of a pair: a + b and a - b. */
 /* Rows that are filled one by one. gcc gets x and y side by side, which one instruction moves
@@ -44,16 +44,16 @@ typedef struct demi_tile {
     int row;                       /* the row of species_coef in all of coef; -1: none */
     dem_real gains[DEMI_ROOM][2*DEM_BODY_REALS];   /* 1/s, of user-defined numbers */
 } demi_tile;
-/* Up to a tile of consecutive entries of the pruned neighbour list. */
+/* Up to a tile of contacts: consecutive entries of the pruned list, or those of >>points. */
 typedef struct demi_span {
-    const int32_t *a, *b, *k;      /* bodies; candidate (with a later work group: its slot) */
+    const int32_t *a, *b;          /* bodies; of >>points: b < 0 is wall -1 - b */
+    const int32_t *k;              /* candidate: slot for a b of a later work group; of >>points: or
+                                      -1 */
     const unsigned char *image;
     dem_real *memory;              /* column e of pair q: memory[e*stride + q] */
     const int32_t *row;            /* of the table of species, or null */
     const dem_real *coef;          /* columns likewise; row and coef are null if all are alike */
-    const int32_t *ball;           /* of clusters: spheres of a, else null */
-    const dem_real *share;         /* of clusters: weights of the pairs */
-    const demi_rows *arm;          /* m, of clusters: centres of the spheres of a, those of b */
+    struct demi_points *points;    /* the tile of >>points; null: lone spheres */
     size_t stride;
     int count;
 } demi_span;
@@ -69,9 +69,7 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     s.memory = near->memory ? near->memory + (size_t)d*(size_t)w->memory_stride*stride + p : 0;
     s.row = w->effects.uniform || demi_many_species(w) ? 0 : near->row + at;
     s.coef = demi_many_species(w) ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
-    s.ball = 0;
-    s.share = 0;
-    s.arm = 0;
+    s.points = 0;
     s.stride = stride;
     s.count = count;
     return s;
@@ -122,6 +120,11 @@ DEM_INLINE void demi_rows_shifted(demi_rows *DEMI_RESTRICT rows, size_t q, const
     DEMI_XY(rows, 1, q) = y;
     rows->z[q] = z;
 }
+DEM_INLINE void demi_rows_put(demi_rows *DEMI_RESTRICT rows, int q, dem_vec3 v) {
+    DEMI_XY(rows, 0, q) = v.x;
+    DEMI_XY(rows, 1, q) = v.y;
+    rows->z[q] = v.z;
+}
 DEM_INLINE dem_vec3 demi_rows_at(const demi_rows *rows, int q) {
     return demi_v(DEMI_XY(rows, 0, q), DEMI_XY(rows, 1, q), rows->z[q]);
 }
@@ -147,7 +150,7 @@ typedef void (*demi_stage)(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
 enum { DEMI_STAGES = 7 };
 struct demi_run {
     const dem_world *w;
-    const demi_span *span;         /* the pairs; null: persistent contacts */
+    const demi_span *span;         /* the contacts */
     int alike, ledger, keep;       /* are both bodies alike? keep: reals of history */
     int usual;                     /* demi_laws_usual */
     int turning, parting;          /* are spins, differences of spins needed? */
@@ -156,6 +159,37 @@ struct demi_run {
     demi_same same;
     demi_stage stage[DEMI_STAGES]; /* in this order, up to the first null */
 };
+/* A tile of contacts at points of bodies (>>points): of member spheres, or persistent ones. It adds
+   to the rows above what lone spheres do not need. */
+typedef struct demi_points {
+    demi_rows arm[2], mid[2];      /* m, from both centres to the contact: now; at mid-step */
+    demi_rows spin[2], spun[2];    /* rad/s, of a and b: now; over the last step */
+    demi_rows outset;              /* m: see demi_kept_more */
+    dem_real couple[DEMI_ROOM];    /* m: likewise */
+    dem_real share[DEMI_ROOM], grip[DEMI_ROOM];            /* weights: of damping, of friction */
+    dem_real lift[DEMI_ROOM];      /* weight of the elastic force, minus share */
+    dem_real still[DEMI_ROOM];     /* N, elastic force of those that are lifted */
+    dem_real slope[DEMI_ROOM];     /* change of the overlap per distance */
+    dem_real base[DEMI_COEFS][DEMI_ROOM], root[2][DEMI_ROOM];      /* coefficients without slope */
+    dem_real known[DEMI_ROOM];     /* kg, m*; 0: depends on the following */
+    demi_rows felt[2];             /* m, arms for effective masses */
+    dem_real inv[DEMI_ROOM], yield[2][6][DEMI_ROOM];       /* 1/kg, of both; as in demi_bodies */
+    demi_tile rows;
+    /* the remaining fields are last, so that all rows begin on cache lines */
+    int32_t a[DEMI_TILE], b[DEMI_TILE], k[DEMI_TILE];      /* see demi_span */
+    demi_kept *contact[DEMI_TILE]; /* null: of two member spheres */
+    dem_real *home[DEMI_TILE];     /* where the history goes: real e to home[e*hop] */
+    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* m, point on a wall; m/s, its velocity */
+    dem_vec3 aside[DEMI_TILE], side[2][DEMI_TILE]; /* see demi_kept_more; m, arms of a and b where
+                                                      it acts */
+    unsigned char raised[DEMI_TILE];               /* 1: lifted; 2: likewise, with `aside` */
+    const demi_coefs_row *filled[DEMI_TILE];       /* what base and root contain; null: unknown */
+    demi_span span;
+    demi_run run, laws;            /* all stages; those of the laws only */
+    size_t hop;
+    int count, ready;              /* contacts; rows that have ever been filled */
+    int turns, weighted, lifted;   /* is any m* unknown? any weight not 1? any lifted? */
+} demi_points;
 
 /* Copies the data of bodies that the stages need into the rows. */
 DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t, int uniform,

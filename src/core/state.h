@@ -153,8 +153,8 @@ typedef struct demi_bodies {
     dem_real *centre;              /* x 4: member spheres: centre relative to the body's centre, and
                                       radius, m; a lone sphere is its own member */
     dem_real *ball;                /* x 4: effects.clustered: the same, with centres in space */
-    dem_real *yield;               /* x 6: likewise, of bodies: inverse inertia in space, xx yy zz
-                                      xy xz yz, 1/(kg m2); 0: fixed, or a lone sphere */
+    dem_real *yield;               /* x 6: with springs: inverse inertia of bodies in space, xx yy
+                                      zz xy xz yz, 1/(kg m2); 0: fixed, or a lone sphere */
     int32_t *centre_start;         /* first member sphere of each body */
     int centres_valid;               /* they fit the bodies and their orientations */
     uint32_t *slot;                /* of each body */
@@ -541,9 +541,7 @@ struct dem_world {
     demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
     int merging_most;
     struct demi_solver solver;     /* >>impulses */
-    demi_events events;            /* >>events; noted: >>noted, >>kept-respond, >>impulses-told */
-    /* >>respond */
-    void (*kernel)(dem_world *w, int domain);
+    demi_events events;            /* >>events; noted: >>noted, >>impulses-told */
     demi_lookers look;             /* >>step, >>output, >>replay */
 };
 /* Marks that user-defined functions run: calls that change the world then fail (demi_null) until

@@ -16,14 +16,13 @@
 /* Evaluates a tile of contacts with a wall, adds `sign` times their forces to those of the grains,
    and updates the half-step velocities of these grains. Contact histories do not change. Empties
    the tile. */
-static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, dem_real sign) {
+static void demi_steer_tile(dem_world *w, demi_points *t, dem_real sign) {
     int q;
-    demi_kept_tile_answer(w, r, t);
+    demi_kept_evaluate(w, t);
     for (q = 0; q < t->count; q++) {
         demi_kept *c = t->contact[q];
         dem_vec3 force, torque;
-        if (t->lifted && demi_kept_aslant(c)) demi_kept_aside_add(w, t, q);
-        c->force = demi_kept_own(t, q, &torque);
+        c->force = demi_point_own(t, q, &torque);
         force = demi_row(t->rows.force, q);
         torque = demi_row(t->rows.torque[0], q);
         if (w->desc.planar) force.z = torque.x = torque.y = 0;
@@ -31,24 +30,23 @@ static void demi_steer_tile(dem_world *w, const demi_run *r, demi_kept_tile *t, 
         demi_force_add(w->bodies.torque + 4*c->a, demi_scale(torque, sign));
         if (w->stage.primed) demi_prime_body(w, c->a);
     }
-    t->count = t->lifted = t->shaped = 0;
+    t->count = t->turns = t->weighted = t->lifted = 0;
 }
 /* Adds `sign` times the forces of all contacts with a wall to those of the grains. */
 static void demi_steer(dem_world *w, int wall, dem_real sign) {
-    DEMI_ALIGNED demi_kept_tile tile;
-    demi_run run = demi_run_begin(w, 0);
+    DEMI_ALIGNED demi_points tile;
     int d, k, known;
-    if (!w->desc.law) demi_run_laws(w, &run, 0);
-    demi_kept_tile_begin(&tile, &run, DEMI_TILE);
+    demi_kept_tile_begin(w, &tile, 0, DEMI_TILE);
     for (d = 0; d < w->domain_count; d++) {
         known = demi_kept_rows_begin(w, d, w->domains[d].kept);
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
-            demi_kept_tile_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
-            if (tile.count == DEMI_TILE) demi_steer_tile(w, &run, &tile, sign);
+            if (w->bodies.shaped) demi_yields_turn(w, c->a, c->a + 1);
+            demi_kept_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
+            if (tile.count == DEMI_TILE) demi_steer_tile(w, &tile, sign);
         }
-        if (tile.count) demi_steer_tile(w, &run, &tile, sign);
+        if (tile.count) demi_steer_tile(w, &tile, sign);
         if (!known) w->domains[d].coefs = 0;    /* other contacts have no row yet */
     }
 }

@@ -483,7 +483,6 @@ static int demi_twin_follow(dem_world *t) {
     demi_image_shifts(t);
     demi_walls_repeat(t);
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
-    demi_kernel_choose(t);
     if (!t->stage.list_valid) return 1;
     if (!demi_walled_note(t)) return 0;
     if (!t->stage.pairs_changed) demi_species_lay(t);

@@ -277,7 +277,7 @@ static void demi_report(const dem_world *world, FILE *out) {
                    ? "differ (coefficients per neighbour pair)"
                    : "of few species (coefficients per pair of species)", walls,
                w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
-               demi_kernel_choose(w));
+               demi_stages_name(w));
     demi_idle_report(w, out);
     demi_print(out, "overlap    %.3g of the radius at most so far%s%s\n", w->booked.overlap_max,
                w->booked.crushed.next > 0 ? ", above 0.05 " : "",

@@ -455,10 +455,7 @@ static int demi_events_copy(dem_world *to, const dem_world *from) {
 static void demi_events_switch(dem_world *w, int on) {
     int k;
     w->events.n.on = on;
-    for (k = 0; k < demi_members(w); k++) {
-        demi_member(w, k)->events.n.on = on;
-        demi_kernel_choose(demi_member(w, k));
-    }
+    for (k = 0; k < demi_members(w); k++) demi_member(w, k)->events.n.on = on;
 }
 /* Ends a recording for lack of memory; demi_events_tell reports it. */
 static void demi_events_fail(dem_world *w) {

@@ -6,17 +6,11 @@
    w->desc.response; DEMI_RESPONSES in >>layout lists the rows and their traits. Whoever reads the
    contacts of a world walks over them (demi_walk), so that all see the same ones. Owns no data.
    --------------------------------------------------------------------------------------------- */
-/* Sets the force loop for the laws in force. Returns its name in reports. */
-static const char *demi_kernel_choose(dem_world *w) {
-    w->kernel = w->effects.clustered ? demi_pairs_members
-        : w->events.n.on ? demi_pairs_noted : demi_pairs;
-    if (w->desc.law) return demi_own_rows(w) ? "your law, row by row" : "your law, called";
-    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
-}
-/* Springs: computes the forces of all contacts that domain d owns: first pairs of spheres, by the
-   kernel of the laws in force, then persistent contacts. */
+/* Springs: computes the forces of all contacts that domain d owns: first pairs of lone spheres,
+   then those of member spheres, then persistent contacts. */
 static void demi_springs(dem_world *w, int d) {
-    w->kernel(w, d);
+    demi_pairs(w, d);
+    if (w->effects.clustered) demi_members_pairs(w, d);
     demi_kept_clear(w, d);
     demi_kept_respond(w, d);
 }

@@ -566,7 +566,6 @@ static dem_result demi_member_prime(dem_world *w) {
 /* Run before and after forces are computed without a step. forces_valid = 0 makes contact histories
    stay as they are. */
 static dem_result demi_member_look(dem_world *w) {
-    demi_kernel_choose(w);
     w->stage.forces_valid = 0;
     return DEM_OK;
 }
@@ -657,11 +656,7 @@ static dem_result demi_step_lose(dem_world *h) {
 }
 /* Builds the neighbour lists of all members. */
 static dem_result demi_all_rebuild(dem_world *h) {
-    dem_result result;
-    if (h->team) return h->team->rebuild(h);
-    result = demi_rebuild(h, "dem_world_step");
-    if (result == DEM_OK) demi_kernel_choose(h);
-    return result;
+    return h->team ? h->team->rebuild(h) : demi_rebuild(h, "dem_world_step");
 }
 /* Computes all forces: 3 touch, 4 respond, 5 gather. near: 1 if pruned lists may be due. Lists of
    contacts of spheres always have room (demi_kept_room). With other shapes the members first agree

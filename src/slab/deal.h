@@ -621,7 +621,6 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         w->bodies.balance.removed = s->head.bodies.balance.removed;
         if (w->events.n.on && !s->head.events.n.on) demi_events_start(w);
         demi_effects(w);                        /* the world itself may never have been stepped */
-        demi_kernel_choose(w);
     }
     demi_called(w, was[1]);
     demi_called(&s->head, was[0]);

@@ -530,7 +530,6 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     if (s->count > 1) w->desc.skin = s->head.margin.skin > 0 ? (dem_real)s->head.margin.skin : -1;
     b->result = demi_rebuild(w, "dem_world_step");
     if (b->result != DEM_OK) return;
-    demi_kernel_choose(w);
     for (i = 0; i < b->ghost_count; i++) b->ghost[i] = w->bodies.slot_index[b->ghost[i]];
     for (i = 0; i < b->lent_count; i++) b->lent[i] = w->bodies.slot_index[b->lent[i]];
     b->work = 4.0*w->bodies.count;
