@@ -70,22 +70,40 @@
 #define DEMI_MAX(a, b) ((a) > (b) ? (a) : (b))
 #define DEMI_PI 3.14159265358979323846
 
-/* Calls task(w, i) for i = 0 .. count - 1. Tasks must not depend on each other. Each thread gets
-   consecutive tasks, because neighbours share data, and it takes some tenths of a microsecond until
-   a thread sees what another one wrote. middle: for each task the share, 0 .. 1, of all work that
-   is done once half of this task is, ascending; null: all tasks are equal. */
+/* Calls task(w, i) for i = 0 .. count - 1. Tasks must not depend on each other. Each thread has a
+   share of consecutive tasks, because neighbours share data, and it takes some tenths of a
+   microsecond until a thread sees what another one wrote. Phases of a step differ in where their
+   work is, so a thread that has done its share takes tasks of the others. Who computes a task
+   changes no result. middle: for each task the part, 0 .. 1, of all work that is done once half of
+   this task is, ascending; null: all tasks are equal. */
 typedef void (*demi_task)(dem_world *w, int index);
+typedef struct demi_share { int next, end; char apart[56]; } demi_share;   /* a cache line */
 static void demi_parallel(dem_world *w, int threads, int count, const double *middle,
                           demi_task task) {
     int i;
 #if DEMI_OPENMP
+    enum { MOST = 256 };
+    threads = threads < MOST ? threads : MOST;
     if (threads > 1 && count > 1) {
-        #pragma omp parallel num_threads(threads) private(i)
-        {
-            const int me = omp_get_thread_num(), all = omp_get_num_threads();
-            for (i = 0; i < count; i++) {
-                const double at = middle ? middle[i] : (i + 0.5)/count;
-                if (DEMI_MIN((int)(at*all), all - 1) == me) task(w, i);
+        demi_share share[MOST];
+        int t;
+        for (t = i = 0; t < threads; t++) {
+            share[t].next = i;
+            while (i < count && (int)((middle ? middle[i] : (i + 0.5)/count)*threads) <= t) i++;
+            share[t].end = t + 1 < threads ? i : count;
+        }
+        #pragma omp parallel num_threads(threads) private(t, i)
+        for (t = 0; t < threads; t++) {
+            demi_share *s = &share[(omp_get_thread_num() + t)%threads];
+            for (;;) {
+#if _OPENMP >= 201107
+                #pragma omp atomic capture
+#else
+                #pragma omp critical
+#endif
+                i = s->next++;
+                if (i >= s->end) break;
+                task(w, i);
             }
         }
         return;
