@@ -79,9 +79,9 @@
        >>meets-polyhedra   contact geometry of polyhedra with other bodies
        >>meet-tables       functions by shape and by wall; contact geometry on a wall
        >>continued         which contact of the step before a persistent contact continues
-       >>kept              contacts with walls and of other shapes: persistent contacts
+       >>persistent              contacts with walls and of other shapes: persistent contacts
        >>points            contacts at points of bodies to forces and torques
-       >>kept-respond      persistent contacts: coefficients and histories
+       >>persistent-respond      persistent contacts: coefficients and histories
        >>members           contacts of spheres that may be members of clusters
      impulse/ - rigid grains: constraints, joints, solvers
        >>impulses          rigid grains: the contacts and constraints of a step
@@ -4441,7 +4441,6 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    Words of the code, beside those of the glossary:
        word in names       meaning
        domain              a work group of some 2000 neighbouring bodies
-       kept                a persistent contact, for example with a wall: see demi_kept
        ball                a sphere of a pair: a member of a cluster, or a lone sphere
        near                the pruned neighbour list: the candidates that may touch within some
                            steps (>>near). Forces are computed for these only. The contact history
@@ -4491,7 +4490,7 @@ typedef struct demi_list {
 } demi_list;
 
 /* With impulses: pairs of member spheres of two bodies that may touch: part a[k] of one body, b[k]
-   of the other, in the order of contacts. >>kept fills it when it first computes the pair. */
+   of the other, in the order of contacts. >>persistent fills it when it first computes the pair. */
 typedef struct demi_near_balls {
     uint8_t count;                 /* pairs; DEMI_BALLS_UNKNOWN: not computed since the list was
                                       built; DEMI_BALLS_ALL: too many, test all */
@@ -4550,10 +4549,10 @@ typedef struct demi_touching {
     dem_real overlap, share;       /* m; weight of its force (of facets: see >>facets) */
     dem_vec3 normal, point;        /* unit, body -> wall; m */
     dem_vec3 shift;                /* m, from the body to its image that touches the wall */
-    dem_vec3 spread;               /* this and the rest: of polyhedra, as in demi_kept */
+    dem_vec3 spread;               /* this and the rest: of polyhedra, as in demi_persistent */
     dem_real slope, couple, deep;
     int32_t corner, corners;
-    int32_t wall, rank;            /* this and the rest: as in demi_kept_more, if part > 0 */
+    int32_t wall, rank;            /* this and the rest: as in demi_persistent_more, if part > 0 */
     dem_real part;
     dem_vec3 lean, turn;
 } demi_touching;
@@ -4597,11 +4596,11 @@ typedef struct demi_shape {
     dem_vec3 centre;               /* m, centre of mass in that frame */
 } demi_shape;
 
-/* What only few persistent contacts need (demi_kept_odd). */
-typedef struct demi_kept_more {
+/* What only few persistent contacts need (demi_persistent_odd). */
+typedef struct demi_persistent_more {
     dem_vec3 felt;                 /* m, to the contact point from the point at which effective
                                       masses are evaluated for the dashpot */
-    dem_real area, added, rate;    /* A of demi_kept_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
+    dem_real area, added, rate; /* A of demi_persistent_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
     dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
     dem_real along;                /* rotate the normal by `along`, 1/m, instead of by `bend` */
     dem_vec3 aside;                /* elastic force across the normal, over that along it */
@@ -4613,16 +4612,17 @@ typedef struct demi_kept_more {
     dem_vec3 lean, turn;           /* 1, m: what the wall's force and moment have beyond that part,
                                       over the normal force */
     int32_t rank;                  /* 0: the first wall; others continue what the first does */
-} demi_kept_more;
+} demi_persistent_more;
 /* A persistent contact: any contact except sphere on sphere and, with springs, except those of
    spheres of clusters. (The history of two spheres is in the pruned neighbour list.) It exists as
    long as the two touch. The contacts of a work group are in the order of body a, pairs before
-   walls; forces are added in this order. In each step, touch builds the list kept_next from scratch
-   and finds for each contact the one of the previous step (kept_now) that it continues. respond
-   continues the history of that contact and computes the forces. Then the two lists are swapped, so
-   touch can start again with more room. Reading and writing it takes most of the time, so what the
-   next step needs comes first, and what few contacts need last. */
-typedef struct demi_kept {
+   walls; forces are added in this order. In each step,
+       touch builds the list persistent_next from scratch
+   and finds for each contact the one of the previous step (persistent_now) that it continues.
+   respond continues the history of that contact and computes the forces. Then the two lists are
+   swapped, so touch can start again with more room. Reading and writing it takes most of the time,
+   so what the next step needs comes first, and what few contacts need last. */
+typedef struct demi_persistent {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */
     int32_t wall, element;
@@ -4634,24 +4634,24 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, whatever it contains */
-    int32_t row;                   /* its coefficients, see demi_kept_row; -1: no law was asked */
+    int32_t row; /* its coefficients, see demi_persistent_row; -1: no law was asked */
     double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 normal, arm_a;        /* unit, a -> b; m, from a's centre to the contact point */
     dem_real grip;                 /* weight of friction */
     dem_real memory[DEMI_MEMORY];  /* contact history: memory_stride reals; touch does not set it */
     dem_vec3 arm_b;                /* m, from b's centre */
-    dem_real overlap, deep;        /* m; < 0: a gap; 0: no force (demi_kept_asked). deep: overlap
+    dem_real overlap, deep; /* m; < 0: a gap; 0: no force (demi_persistent_asked). deep: overlap
                                       over the smaller half width (of a sphere: its radius) */
     dem_real share, lift;          /* weights of damping, elastic force; */
-    dem_real weight;               /* before contacts are merged: demi_kept_share */
+    dem_real weight;               /* before contacts are merged: demi_persistent_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
-                                      all of it, see demi_kept_inherit */
+                                      all of it, see demi_persistent_inherit */
     dem_real bend, slope;          /* per distance: turn of the normal, 1/m; change of overlap */
     dem_real r_eff;                /* m */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as in demi_touching */
-    demi_kept_more more;
-} demi_kept;
+    demi_persistent_more more;
+} demi_persistent;
 /* Coefficients of persistent contacts. Those that agree in the first fields share a row, unless
    there are many kinds of them. */
 typedef struct demi_coefs_row {
@@ -4703,18 +4703,18 @@ typedef struct demi_domain {
     int near_own, near_cross, near_end;    /* pruned list: end of pairs inside; begin and end of
                                       pairs with later groups; */
     int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for all other
-                                      pairs of bodies: >>kept finds their contacts */
+                                      pairs of bodies: >>persistent finds their contacts */
     int near_lone[2];              /* number of pairs of two lone spheres (demi_lone), which come
                                       first among the pairs inside, and among those with later
                                       groups; 0 unless effects.clustered */
     int near_next_own, near_next_cross, near_next_end;     /* the same of the list being built */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
-    int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
-    int kept_walls;                /* those with walls */
+    int persistent, persistent_next; /* persistent contacts in persistent_now and persistent_next */
+    int persistent_walls;          /* those with walls */
     /* impulses, 1: a contact of polyhedra has several points; a contact has three or more */
     int faced, seated;
-    int kept_same;                 /* where demi_kept_same starts its search */
+    int persistent_same;           /* where demi_persistent_same starts its search */
     int coefs;                     /* rows in use of w->coefs */
     int touching_first;            /* begin of its segment of w->touching */
     int overflow;                  /* lists that ran out of room: 1 pairs inside, 2 pairs with later
@@ -4763,7 +4763,7 @@ enum {
     DEMI_BALLS = 4,                /* elements are grains: spheres of `radius` about their corner */
     DEMI_FLAT = 8,                 /* the half space beyond z = 0 */
     DEMI_CROSSED = 16,             /* has points of negative weight, as where the wires of a sieve
-                                      cross: demi_kept_crossed */
+                                      cross: demi_persistent_crossed */
     DEMI_SMOOTH = 32,              /* has no edges */
     DEMI_ONLY_GAPS = 64            /* its function for polyhedra finds gaps, not pressure */
 };
@@ -5235,15 +5235,16 @@ typedef struct demi_bodies {
     dem_body_counts balance;
 } demi_bodies;
 /* Saved contact history. While a list is valid, the history of two spheres is stored in the columns
-   of the pruned list; every other contact stores its own (demi_kept). A new pruned list copies the
-   columns of the previous one (near_last), pair by pair. Before a rebuild, and when bodies are
-   added or removed (demi_list_drop), indices are about to change. Then the history of spheres is
-   saved here, by slot, and persistent contacts store slots instead of indices. The next list reads
-   the saved history (demi_near_make), and persistent contacts move to the work groups of their
-   bodies (demi_kept_move). If the two bodies of a contact exchange their roles, because the other
-   one now has the lower index, vectors change sign. Nothing is discarded before the new list is
-   fully allocated, so a rebuild that ran out of memory can be repeated. Checkpoints contain all of
-   it. Entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is `row`. */
+   of the pruned list; every other contact stores its own (demi_persistent). A new pruned list
+   copies the columns of the previous one (near_last), pair by pair. Before a rebuild, and when
+   bodies are added or removed (demi_list_drop), indices are about to change. Then the history of
+   spheres is saved here, by slot, and persistent contacts store slots instead of indices. The next
+   list reads the saved history (demi_near_make), and persistent contacts move to the work groups of
+   their bodies (demi_persistent_move). If the two bodies of a contact exchange their roles, because
+   the other one now has the lower index, vectors change sign. Nothing is discarded before the new
+   list is fully allocated, so a rebuild that ran out of memory can be repeated. Checkpoints contain
+   all of it. Entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is
+   `row`. */
 enum { DEMI_BALLS_MOST = 1024 };               /* > largest number of spheres of a cluster */
 typedef struct demi_filed {
     int32_t *start;                /* rows + 2 */
@@ -5498,7 +5499,7 @@ struct dem_world {
     /* >>shapes */
     int shape_count;
     demi_shape *shapes;
-    /* >>bodies; motion: >>integrators; forces: >>respond, >>kept */
+    /* >>bodies; motion: >>integrators; forces: >>respond, >>persistent */
     demi_bodies bodies;
     demi_filed filed;
     /* >>walls; weights of facets: >>facets; poses and loads: >>step; new motions: >>steering */
@@ -5580,9 +5581,9 @@ struct dem_world {
     demi_touching *touching;       /* contact points of one body and wall, for each work group */
     int32_t *touching_table;
     demi_link *touching_links;
-    int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
-    demi_kept *kept_now, *kept_next;
-    demi_coefs_row *coefs;         /* of group d from 2*kept_first[d] on, see demi_kept_row */
+    int persistent_first[DEMI_DOMAINS + 1]; /* where those of group d begin, in either list */
+    demi_persistent *persistent_now, *persistent_next;
+    demi_coefs_row *coefs; /* of group d from 2*persistent_first[d] on, see demi_persistent_row */
     demi_flush flush;              /* >>flush */
     /* >>near */
     demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
@@ -5592,7 +5593,7 @@ struct dem_world {
     struct demi_quiet *quiet;      /* isolation of blocks of bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* 1: being built after a search; head: some is due */
     int grown;                     /* >>growth: radii have just changed; not state */
-    demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
+    demi_persistent *merging;      /* >>members: contacts to merge, merging_most per work group */
     int merging_most;
     struct demi_solver solver;     /* >>impulses */
     demi_events events;            /* >>events; noted: >>noted, >>impulses-told */
@@ -9655,33 +9656,36 @@ static int demi_carry_collect(dem_world *w) {
 }
 
 /* Returns the persistent contacts of domain d. */
-DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
-    return w->kept_now + w->kept_first[d];
+DEM_INLINE demi_persistent *demi_persistent_of(const dem_world *w, int d) {
+    return w->persistent_now + w->persistent_first[d];
 }
 /* True if a contact is a later part of one with several walls: it continues what the first does. */
-DEM_INLINE int demi_kept_later(const demi_kept *c) { return c->odd && c->more.rank > 0; }
+DEM_INLINE int demi_persistent_later(const demi_persistent *c) {
+    return c->odd && c->more.rank > 0;
+}
 /* Returns the index of the old contact that a later part c continues: of the parts of the one that
    its first part continues, that with the same wall, else the first. end: of the body's old
    contacts. */
-static int demi_kept_part(const dem_world *w, int d, const demi_kept *end, const demi_kept *c) {
+static int demi_persistent_part(const dem_world *w, int d, const demi_persistent *end,
+                                const demi_persistent *c) {
     const int from = c[-c->more.rank*c->corners].from;
-    const demi_kept *now = demi_kept_of(w, d), *o = from < 0 ? end : now + from;
+    const demi_persistent *now = demi_persistent_of(w, d), *o = from < 0 ? end : now + from;
     do o += c->corners;
-    while (o < end && demi_kept_later(o) && o->wall != c->wall);
-    return o < end && demi_kept_later(o) ? (int)(o - now) : from;
+    while (o < end && demi_persistent_later(o) && o->wall != c->wall);
+    return o < end && demi_persistent_later(o) ? (int)(o - now) : from;
 }
 /* Lets each of the four points c[0] .. c[3] of a pressure continue the old point that lies where it
    does. This has another number if the direction in which the pressure is spread most has reversed
    in this step, or has turned by a right angle (demi_patch_along). Springs that pass to the
    opposite point would reverse the moment of friction about the normal. */
-static void demi_kept_turn(const dem_world *w, int d, demi_kept *c) {
+static void demi_persistent_turn(const dem_world *w, int d, demi_persistent *c) {
     static const unsigned char turned[4][4] = {{0, 1, 2, 3}, {2, 0, 3, 1}, {3, 2, 1, 0},
                                                {1, 3, 0, 2}};
-    const demi_kept *now = demi_kept_of(w, d);
+    const demi_persistent *now = demi_persistent_of(w, d);
     dem_vec3 is[4] = DEM_ZERO, was[4] = DEM_ZERO;
     dem_real same, right;
     int from[4], k, turns;
-    if (!demi_response_is(w, DEMI_PRESSING) || demi_kept_later(c)) return;
+    if (!demi_response_is(w, DEMI_PRESSING) || demi_persistent_later(c)) return;
     for (k = 0; k < 4; k++) {
         if (c[k].from < 0 || now[c[k].from].corners != 4) return;
         from[c[k].corner] = c[k].from;
@@ -9694,7 +9698,7 @@ static void demi_kept_turn(const dem_world *w, int d, demi_kept *c) {
     for (k = 0; k < 4 && turns; k++) c[k].from = from[turned[turns][c[k].corner]];
 }
 /* The weight of friction of all parts of a contact. */
-DEM_INLINE dem_real demi_kept_whole(const demi_kept *c) {
+DEM_INLINE dem_real demi_persistent_whole(const demi_persistent *c) {
     return c->odd && c->more.part > 0 ? c->grip/c->more.part : c->grip;
 }
 /* Marks in met[] which materials have touched. Persistent contacts are marked when they begin.
@@ -9726,8 +9730,8 @@ static int demi_list_drop(dem_world *w) {
     demi_met_look(w, w->booked.met);
     for (d = 0; d < w->domain_count; d++) {
         memset(w->domains[d].met, 0, sizeof w->domains[d].met);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent *c = demi_persistent_of(w, d) + k;
             c->a = (int32_t)w->bodies.slot[c->a];
             if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }
@@ -12266,8 +12270,8 @@ static void demi_surfaces_outdated(dem_world *w) {
     int d, k;
     demi_facets_outdated(w);
     for (d = 0; d < DEMI_DOMAINS; d++)
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent *c = demi_persistent_of(w, d) + k;
             if (c->b < 0 && demi_faceted(&w->walls[c->wall])) c->element = -1;
         }
 }
@@ -12910,14 +12914,14 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
 static void demi_wall_forget(dem_world *w, int wall) {
     int d, k, left;
     for (d = 0; d < DEMI_DOMAINS; d++) {
-        demi_kept *c = w->domains[d].kept ? demi_kept_of(w, d) : 0;
-        for (k = left = 0; k < w->domains[d].kept; k++) {
+        demi_persistent *c = w->domains[d].persistent ? demi_persistent_of(w, d) : 0;
+        for (k = left = 0; k < w->domains[d].persistent; k++) {
             const int next = k + 4;             /* the part of the next wall, if there is one */
             if (c[k].b >= 0 || c[k].wall != wall) c[left++] = c[k];
-            else if (next < w->domains[d].kept && demi_kept_later(&c[next]) &&
-                     !demi_kept_later(&c[k])) c[next].more.rank = 0;
+            else if (next < w->domains[d].persistent && demi_persistent_later(&c[next]) &&
+                     !demi_persistent_later(&c[k])) c[next].more.rank = 0;
         }
-        w->domains[d].kept = left;
+        w->domains[d].persistent = left;
     }
 }
 DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
@@ -15897,10 +15901,10 @@ static void demi_domain_search(dem_world *w, int d) {
 /* ---------------------------------------------------------------------------------------------
    >>lists
    Wall candidates (the wall elements that a body may touch before the next rebuild), allocation of
-   all lists, and the transfer of persistent contacts (>>kept) from the old lists, by slot, to the
-   new ones. All memory is allocated before any contact moves, so a rebuild that runs out of memory
-   loses none. This part writes the wall_..., cross_..., touching_... and kept_... fields of
-   dem_world.
+   all lists, and the transfer of persistent contacts (>>persistent) from the old lists, by slot, to
+   the new ones. All memory is allocated before any contact moves, so a rebuild that runs out of
+   memory loses none. This part writes the wall_..., cross_..., touching_... and persistent_...
+   fields of dem_world.
    --------------------------------------------------------------------------------------------- */
 
 /* The gap, m, of a candidate that is only a sheet between bodies: larger than any. */
@@ -16221,7 +16225,7 @@ static int demi_touching_reserve(dem_world *w) {
    quarter. Slabs of spheres do not allocate in the middle of a step, so they get room for the
    largest possible number of wall contacts. Groups from `listed` on are out of use and only hold
    contacts that continue. */
-static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int *first) {
+static void demi_persistent_lay(const dem_world *w, int listed, const int *crowd, int *first) {
     int d;
     for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -16236,30 +16240,30 @@ static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int 
 }
 /* Allocates the persistent contacts of a new list and the walls' sums; moves nothing yet. first
    receives where those of each work group will begin. Returns 0 if memory runs out. */
-static int demi_kept_room(dem_world *w, int *first) {
+static int demi_persistent_room(dem_world *w, int *first) {
     int crowd[DEMI_DOMAINS], d, k, total = 0;
     memset(crowd, 0, sizeof crowd);
-    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].kept;
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].persistent;
     for (d = 0; d < DEMI_DOMAINS; d++)          /* upper bound per group */
-        for (k = 0; k < w->domains[d].kept; k++) {
-            const demi_kept *c = demi_kept_of(w, d) + k;
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            const demi_persistent *c = demi_persistent_of(w, d) + k;
             const int a = w->bodies.slot_index[c->a], b = c->b < 0 ? a : w->bodies.slot_index[c->b];
             if (a >= 0 && b >= 0) crowd[demi_domain_of(w, DEMI_MIN(a, b))]++;
         }
-    demi_kept_lay(w, w->domain_count, crowd, first);
+    demi_persistent_lay(w, w->domain_count, crowd, first);
     return demi_wall_sums_room(w) &&
-           DEMI_GROW(w, w->kept_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
-           DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]) &&
+           DEMI_GROW(w, w->persistent_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
+           DEMI_GROW(w, w->persistent_now, (size_t)first[DEMI_DOMAINS]) &&
            DEMI_GROW(w, w->coefs, 2*(size_t)first[DEMI_DOMAINS]);
 }
 /* Moves the contacts whose bodies and walls still exist from the old list (by slot) into the work
    groups of the new one. Body a becomes the one with the lower index. Where this exchanges a and b,
    the normal and the vectors of the history change sign, and arms and parts are exchanged. */
-static void demi_kept_move(dem_world *w, const int *first) {
+static void demi_persistent_move(dem_world *w, const int *first) {
     int d, k, e = 0, i;
     for (d = 0; d < DEMI_DOMAINS; d++) {
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept c = demi_kept_of(w, d)[k];
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent c = demi_persistent_of(w, d)[k];
             const int pair = c.b >= 0;
             c.a = w->bodies.slot_index[c.a];
             if (pair) c.b = w->bodies.slot_index[c.b];
@@ -16276,26 +16280,27 @@ static void demi_kept_move(dem_world *w, const int *first) {
                 for (i = 0; i < w->memory_stride; i++)
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
-            w->kept_next[e++] = c;
+            w->persistent_next[e++] = c;
         }
-        w->domains[d].kept = w->domains[d].kept_walls = 0;
+        w->domains[d].persistent = w->domains[d].persistent_walls = 0;
         w->domains[d].coefs = 0;                /* materials may have changed */
     }
-    memcpy(w->kept_first, first, sizeof w->kept_first);
+    memcpy(w->persistent_first, first, sizeof w->persistent_first);
     /* counting sort by body a; bodies.order is free after the search and holds the counts */
     if (e) memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
-    for (k = 0; k < e; k++) w->bodies.order[w->kept_next[k].a]++;
+    for (k = 0; k < e; k++) w->bodies.order[w->persistent_next[k].a]++;
     for (d = 0; d < w->domain_count; d++)
         for (i = w->domains[d].begin; e && i < w->domains[d].end; i++) {
             const int here = w->bodies.order[i];
-            w->bodies.order[i] = w->domains[d].kept;
-            w->domains[d].kept += here;
+            w->bodies.order[i] = w->domains[d].persistent;
+            w->domains[d].persistent += here;
         }
     for (k = 0; k < e; k++) {
-        const demi_kept *c = &w->kept_next[k];
+        const demi_persistent *c = &w->persistent_next[k];
         d = demi_domain_of(w, c->a);
-        demi_kept_of(w, d)[w->bodies.order[c->a]++] = *c;
-        w->domains[d].kept_walls += c->b < 0 && (c->overlap > 0 || c->row < 0);    /* as respond */
+        demi_persistent_of(w, d)[w->bodies.order[c->a]++] = *c;
+        w->domains[d].persistent_walls += c->b < 0 &&
+            (c->overlap > 0 || c->row < 0); /* as respond */
     }
 }
 
@@ -16944,7 +16949,7 @@ static void demi_near_choose(dem_world *w) {
             const demi_domain *domain = &w->domains[d];
             near += domain->near_own + domain->near_end - domain->near_cross;
             near += 4*(domain->near_shaped_end - domain->near_shaped);
-            touching += domain->contacts + 3*(domain->kept - domain->kept_walls);
+            touching += domain->contacts + 3*(domain->persistent - domain->persistent_walls);
             candidates += domain->own + domain->cross;
         }
         if (w->effects.unlike) candidates *= 6;   /* support points, some gaps */
@@ -17209,9 +17214,9 @@ static int demi_domains_for(int count, int shaped) {
 /* Clears a work group that is out of use, because old counts must not influence later choices. Its
    number of persistent contacts stays, because these are still to be moved. */
 static void demi_domain_forget(demi_domain *o) {
-    const int kept = o->kept;
+    const int persistent = o->persistent;
     memset(o, 0, sizeof *o);
-    o->kept = kept;
+    o->persistent = persistent;
 }
 /* Fails because a body has no valid position: the run blew up earlier and was continued. */
 static dem_result demi_lost(dem_world *w, int body) {
@@ -17371,8 +17376,8 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     w->filed.memory = fresh;
     w->filed.stride = (int)to;
     for (d = 0; d < DEMI_DOMAINS; d++) {        /* a new slab has contacts, and no work group yet */
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent *c = demi_persistent_of(w, d) + k;
             memcpy(old, c->memory, sizeof old);
             memset(c->memory, 0, sizeof c->memory);
             demi_memory_map(was, &w->laws, own, old, c->memory);
@@ -17424,14 +17429,14 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_weigh(dem_world *w) {
     /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
        body of another shape too, and the contact of such a body more */
-    const double kept = w->effects.unlike ? 16 : 4;
+    const double persistent = w->effects.unlike ? 16 : 4;
     double work[DEMI_DOMAINS], all = 0, before = 0;
     int d;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *o = &w->domains[d];
         const int pairs = o->near_own + o->near_end - o->near_cross;
         const int shaped = o->near_shaped_end - o->near_shaped;
-        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + kept*o->kept;
+        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + persistent*o->persistent;
         all += work[d];
     }
     for (d = 0; d < w->domain_count; d++) {
@@ -17492,8 +17497,8 @@ static int demi_walls_find(dem_world *w) {
    cannot be undone. Returns 0 if memory runs out. */
 static int demi_contacts_move(dem_world *w) {
     int first[DEMI_DOMAINS + 1];
-    if (!demi_kept_room(w, first) || !demi_touching_reserve(w)) return 0;
-    demi_kept_move(w, first);
+    if (!demi_persistent_room(w, first) || !demi_touching_reserve(w)) return 0;
+    demi_persistent_move(w, first);
     return 1;
 }
 /* Makes the slots freed since the last list available again. */
@@ -18440,7 +18445,7 @@ struct demi_run {
 typedef struct demi_points {
     demi_rows arm[2], mid[2];      /* m, from both centres to the contact: now; at mid-step */
     demi_rows spin[2], spun[2];    /* rad/s, of a and b: now; over the last step */
-    demi_rows outset;              /* m: see demi_kept_more */
+    demi_rows outset;              /* m: see demi_persistent_more */
     dem_real couple[DEMI_ROOM];    /* m: likewise */
     dem_real share[DEMI_ROOM], grip[DEMI_ROOM];            /* weights: of damping, of friction */
     dem_real lift[DEMI_ROOM];      /* weight of the elastic force, minus share */
@@ -18453,10 +18458,11 @@ typedef struct demi_points {
     demi_tile rows;
     /* the remaining fields are last, so that all rows begin on cache lines */
     int32_t a[DEMI_TILE], b[DEMI_TILE], k[DEMI_TILE];      /* see demi_span */
-    demi_kept *contact[DEMI_TILE]; /* null: of two member spheres */
+    demi_persistent *contact[DEMI_TILE]; /* null: of two member spheres */
     dem_real *home[DEMI_TILE];     /* where the history goes: real e to home[e*hop] */
     dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* m, point on a wall; m/s, its velocity */
-    dem_vec3 aside[DEMI_TILE], side[2][DEMI_TILE]; /* see demi_kept_more; m, arms of a and b where
+    dem_vec3 aside[DEMI_TILE],
+        side[2][DEMI_TILE]; /* see demi_persistent_more; m, arms of a and b where
                                                       it acts */
     unsigned char raised[DEMI_TILE];               /* 1: lifted; 2: likewise, with `aside` */
     const demi_coefs_row *filled[DEMI_TILE];       /* what base and root contain; null: unknown */
@@ -19071,7 +19077,8 @@ static int demi_notes_room(dem_world *w) {
     demi_events *e = &w->events;
     int d;
     for (d = 0, e->noted_first[0] = 0; d < DEMI_DOMAINS; d++) {
-        const int n = d < w->domain_count ? w->domains[d].near_end + w->domains[d].kept_next : 0;
+        const int n = d < w->domain_count ? w->domains[d].near_end + w->domains[d].persistent_next
+            : 0;
         e->noted_first[d + 1] = e->noted_first[d] + n;
         e->noted_count[d] = 0;
     }
@@ -19111,7 +19118,7 @@ static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *s
                            const demi_run *r) {
     int q, k;
     for (q = 0; q < span->count; q++) {
-        const demi_kept *c = span->points ? span->points->contact[q] : 0;
+        const demi_persistent *c = span->points ? span->points->contact[q] : 0;
         const int old = c ? c->from >= 0 : t->overlap[q] - t->closing[q]*r->same.dt > 0;
         const dem_vec3 normal = demi_row(t->normal, q);
         double energy[DEMI_E_ROLL + 1];
@@ -19287,9 +19294,9 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
 }
 /* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
-   while a has its part of all (demi_kept_more). Over all parts, the two are the same. */
+   while a has its part of all (demi_persistent_more). Over all parts, the two are the same. */
 DEM_INLINE dem_vec3 demi_point_own(const demi_points *t, int q, dem_vec3 *moment) {
-    const demi_kept *c = t->contact[q];
+    const demi_persistent *c = t->contact[q];
     const dem_vec3 force = demi_v(t->rows.force[0][q], t->rows.force[1][q], t->rows.force[2][q]);
     *moment = demi_v(t->rows.moment[0][q], t->rows.moment[1][q], t->rows.moment[2][q]);
     if (!c->odd || !(c->more.part > 0)) return force;
@@ -19301,7 +19308,7 @@ static void demi_point_wall(dem_world *w, int d, demi_points *t, int q) {
     const int i = -1 - t->b[q];
     const demi_wall *wall = &w->walls[i];
     demi_wall_sum *sum = &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)i];
-    demi_kept *c = t->contact[q];
+    demi_persistent *c = t->contact[q];
     dem_vec3 moment, rubs = demi_row(t->rows.force, q);
     c->force = demi_point_own(t, q, &moment);
     demi_wall_sum_add(w, sum, i, t->at[q], c->force, moment, t->surface[q]);
@@ -20572,7 +20579,7 @@ static int demi_spots_nearest(demi_d3 *x, const double *gap, int count, double b
    >>on-walls
    Contact points of parts of bodies with walls: geometry only. First spheres (and clusters, which
    are many spheres), then ellipsoids, which share the code for surfaces of facets; finally how the
-   normals rotate there as a sphere moves. >>kept makes contacts of the contact points.
+   normals rotate there as a sphere moves. >>persistent makes contacts of the contact points.
    --------------------------------------------------------------------------------------------- */
 
 /* m: candidates with gaps up to this, as of when the list was built, may touch now or be within the
@@ -20611,7 +20618,7 @@ typedef struct demi_view {
     const int32_t *cell;           /* their cells, of a tessellation that repeats */
     int count, left;               /* left: count, plus those of later images */
     int32_t base;                  /* added to the numbers of elements: tells cells apart */
-    int several;                   /* 1: other surfaces are near the body, see demi_kept_cover */
+    int several; /* 1: other surfaces are near the body, see demi_persistent_cover */
     int late;                      /* 1: the body was just set, and moves along with the wall */
     dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
@@ -21159,7 +21166,7 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
 #define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
 /* Returns what only few contacts need, for a contact that needs it from now on. */
-DEM_INLINE demi_kept_more *demi_kept_odd(demi_kept *c) {
+DEM_INLINE demi_persistent_more *demi_persistent_odd(demi_persistent *c) {
     if (c->odd) return &c->more;
     c->odd = 1;
     memset(&c->more, 0, sizeof c->more);
@@ -21168,9 +21175,9 @@ DEM_INLINE demi_kept_more *demi_kept_odd(demi_kept *c) {
 /* Sets bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
    point: of the wall's surface, for the image of the body that touches it. */
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
-                           dem_vec3 point, demi_kept *c) {
+                           dem_vec3 point, demi_persistent *c) {
     const dem_real *R = wall->pose.rotation;
-    demi_kept_more *more;
+    demi_persistent_more *more;
     demi_bend b;
     if (!demi_bends[wall->kind]) return;
     memset(&b, 0, sizeof b);
@@ -21181,7 +21188,7 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
     demi_bends[wall->kind](wall, among, count, &b);
     c->bend = b.turn;
     if (b.along < 0 || b.along > 0 || demi_dot(b.axis, b.axis) > 0) {
-        more = demi_kept_odd(c);
+        more = demi_persistent_odd(c);
         more->along = b.along;
         more->axis = demi_rotate(R, b.axis);
     }
@@ -22877,10 +22884,10 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
 
 /* ---------------------------------------------------------------------------------------------
    >>ellipsoids
-   Contact points of ellipsoids with ellipsoids and spheres, a tile of pairs at a time. >>kept asks
-   for pairs in the order of its list. A tile is filled with the next pairs whose bounding spheres
-   overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all of them in
-   vectors. With the parameter of the step before as its start, one iteration is nearly always
+   Contact points of ellipsoids with ellipsoids and spheres, a tile of pairs at a time. >>persistent
+   asks for pairs in the order of its list. A tile is filled with the next pairs whose bounding
+   spheres overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all of them
+   in vectors. With the parameter of the step before as its start, one iteration is nearly always
    enough; the other pairs are solved individually. Owns nothing; the tile belongs to the caller.
    --------------------------------------------------------------------------------------------- */
 
@@ -22915,8 +22922,8 @@ typedef struct demi_ellipsoid_tile {
     double s[3][DEMI_MEETS], normal[3][DEMI_MEETS], point[3][DEMI_MEETS];
     int32_t entry[DEMI_MEETS], from[DEMI_MEETS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
-    const demi_kept *old, *after;  /* first old contact of body a or of a later body; the one after
-                                      the last match */
+    const demi_persistent *old;    /* first old contact of body a or of a later body */
+    const demi_persistent *after;  /* the one after the last match */
 } demi_ellipsoid_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -23015,9 +23022,9 @@ DEM_INLINE dem_real demi_ellipsoid_body_put(const dem_world *w, demi_ellipsoid_t
                               demi_scale(shape->axes, scale));
 }
 /* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
-DEM_INLINE const demi_kept *demi_ellipsoids_old(demi_ellipsoid_tile *t, const demi_kept *last,
-                                                int a, int b) {
-    const demi_kept *o;
+DEM_INLINE const demi_persistent *demi_ellipsoids_old(demi_ellipsoid_tile *t,
+                                                      const demi_persistent *last, int a, int b) {
+    const demi_persistent *o;
     while (t->old < last && t->old->a < a) t->after = ++t->old;
     for (o = t->after; o < last && o->a == a && o->b != b;) o++;
     if (o == last || o->a != a)                 /* then those before that */
@@ -23031,7 +23038,8 @@ DEM_INLINE const demi_kept *demi_ellipsoids_old(demi_ellipsoid_tile *t, const de
 static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
                                              demi_ellipsoid_tile *t) {
     const int base = d*w->near.stride;
-    const demi_kept *now = demi_kept_of(w, d), *last = now + w->domains[d].kept, *o;
+    const demi_persistent *now = demi_persistent_of(w, d), *o;
+    const demi_persistent *last = now + w->domains[d].persistent;
     int k;
     t->count = t->next = 0;
     for (; p < end && t->count < DEMI_MEETS; p++) {
@@ -23456,7 +23464,7 @@ typedef struct demi_flush_pair {
     int first, a, of, piece;       /* first: the fixed one is a of the contact; a, of: the free one
                                       and its part's number */
 } demi_flush_pair;
-static demi_flush_pair demi_flush_pair_of(const dem_world *w, const demi_kept *c,
+static demi_flush_pair demi_flush_pair_of(const dem_world *w, const demi_persistent *c,
                                           const demi_part *p, const demi_part *q) {
     demi_flush_pair o;
     int b;
@@ -23588,10 +23596,11 @@ static int demi_flush_pressed(const dem_world *w, const demi_flush_pair *c, demi
 /* --- the history of a contact that takes over from another one --- */
 
 /* Returns the first old contact of body a with a body, of its work group; null if it has none. */
-static const demi_kept *demi_flush_old(const dem_world *w, int a, const demi_kept **end) {
+static const demi_persistent *demi_flush_old(const dem_world *w, int a,
+                                             const demi_persistent **end) {
     const int d = demi_domain_of(w, a);
-    const demi_kept *old = demi_kept_of(w, d);
-    int lo = 0, hi = w->domains[d].kept;
+    const demi_persistent *old = demi_persistent_of(w, d);
+    int lo = 0, hi = w->domains[d].persistent;
     *end = old + hi;
     while (lo < hi) {
         const int mid = lo + (hi - lo)/2;
@@ -23602,8 +23611,8 @@ static const demi_kept *demi_flush_old(const dem_world *w, int a, const demi_kep
 }
 /* Lets a new contact c of two bodies (o) continue an old one of the free body with another fixed
    body, at nearly the same normal: of spheres and ellipsoids one that is covered now. */
-static void demi_flush_take_over(const dem_world *w, const demi_flush_pair *o, demi_kept *c) {
-    const demi_kept *best = 0, *old, *end;
+static void demi_flush_take_over(const dem_world *w, const demi_flush_pair *o, demi_persistent *c) {
+    const demi_persistent *best = 0, *old, *end;
     dem_real most = DEM_R(0.95), turn = 1;
     int k, e;
     for (k = o->row->from; k < o->row->to; k++) {
@@ -23633,7 +23642,7 @@ static void demi_flush_take_over(const dem_world *w, const demi_flush_pair *o, d
     c->from = DEMI_TAKEN_OVER;
 }
 /* The same for all points of a contact c of parts p and q. */
-static void demi_flush_follow(const dem_world *w, demi_kept *c, const demi_part *p,
+static void demi_flush_follow(const dem_world *w, demi_persistent *c, const demi_part *p,
                               const demi_part *q) {
     const int points = DEMI_MAX(c->corners, 1);
     demi_flush_pair o;
@@ -23645,7 +23654,7 @@ static void demi_flush_follow(const dem_world *w, demi_kept *c, const demi_part 
 }
 /* True if contact c of parts p and q, which have just been found to touch, is none of the common
    surface of fixed bodies. gap: from p's centre to q's, m; spots: its points, if it has several. */
-static int demi_flush_within(const dem_world *w, const demi_kept *c, const demi_part *p,
+static int demi_flush_within(const dem_world *w, const demi_persistent *c, const demi_part *p,
                              const demi_part *q, dem_vec3 gap, demi_spots *spots) {
     const demi_flush_pair o = demi_flush_pair_of(w, c, p, q);
     if (!o.row) return 0;
@@ -23658,7 +23667,7 @@ static int demi_flush_within(const dem_world *w, const demi_kept *c, const demi_
 
 /* ---------------------------------------------------------------------------------------------
    >>meets
-   Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
+   Narrow phase for parts of two bodies: geometry only, into a contact that >>persistent has begun.
    Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85]. Owns
    nothing, and writes only the contacts that it is given.
    --------------------------------------------------------------------------------------------- */
@@ -23667,11 +23676,11 @@ static int demi_flush_within(const dem_world *w, const demi_kept *c, const demi_
    centre to q's; lambda: a start value, 0: unknown. spots: set if the contact has several points,
    each with its own gap, relative to p's centre; otherwise its count stays 0. --- */
 typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots);
+                            dem_vec3 gap, double lambda, demi_persistent *c, demi_spots *spots);
 /* Two spheres of radii r and s, at x and y from the centres of their bodies. The contact point
    divides their distance in the ratio of the radii. */
 DEM_INLINE int demi_balls_meet(const dem_world *w, dem_vec3 x, dem_real r, dem_vec3 y, dem_real s,
-                               dem_vec3 gap, demi_kept *c) {
+                               dem_vec3 gap, demi_persistent *c) {
     const dem_real d = demi_length(gap), sum = r + s;
     if (!(d < sum + demi_range(w, sum))) return 0;
     c->normal = d > 0 ? demi_scale(gap, 1/d) : demi_v(0, 0, 1);
@@ -23684,15 +23693,14 @@ DEM_INLINE int demi_balls_meet(const dem_world *w, dem_vec3 x, dem_real r, dem_v
     return 1;
 }
 static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_kept *c,
-                            demi_spots *spots) {
+                            dem_vec3 gap, double lambda, demi_persistent *c, demi_spots *spots) {
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
 /* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
    be a sphere. p, q: the two; not read if the overlap is the conservative one. */
 DEM_INLINE void demi_ellipsoids_set(const dem_world *w, demi_ellipsoid_tile *t, int k,
-                                    const demi_part *p, const demi_part *q, demi_kept *c) {
+                                    const demi_part *p, const demi_part *q, demi_persistent *c) {
     c->lambda = t->to[k];
     c->normal = demi_d3_real(demi_ellipsoids_at(t->normal, k));
     c->deep = (dem_real)t->deep[k];
@@ -23709,7 +23717,7 @@ DEM_INLINE void demi_ellipsoids_set(const dem_world *w, demi_ellipsoid_tile *t, 
     }
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                 dem_vec3 gap, double lambda, demi_kept *c,
+                                 dem_vec3 gap, double lambda, demi_persistent *c,
                                  demi_spots *spots) {
     demi_ellipsoid_tile t;
     dem_real thin = demi_ellipsoid_put(&t, 0, 0, p->q, demi_part_axes(p));
@@ -23732,7 +23740,7 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
    deepest point, as for a sphere. The gradient of l (1 - W0) passes through the point of the wall,
    at W0 times the arm. */
 static void demi_ellipsoid_overlap(const dem_world *w, const demi_part *p, dem_real left,
-                                   dem_real edge, demi_kept *c) {
+                                   dem_real edge, demi_persistent *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
     c->overlap = left*(h + edge);
     c->deep = c->overlap/h;
@@ -23741,7 +23749,7 @@ static void demi_ellipsoid_overlap(const dem_world *w, const demi_part *p, dem_r
         const dem_real l = (dem_real)demi_part_equal(p) + edge;
         c->overlap = left*l;
         c->slope = l/(h + edge);
-        demi_kept_odd(c)->outset = demi_scale(c->arm_a, left);
+        demi_persistent_odd(c)->outset = demi_scale(c->arm_a, left);
     }
 }
 
@@ -23755,7 +23763,7 @@ static void demi_ellipsoid_overlap(const dem_world *w, const demi_part *p, dem_r
    --------------------------------------------------------------------------------------------- */
 /* A sphere and a polyhedron, at the nearest point; R* is the sphere's radius, as on a plane. */
 static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                 dem_vec3 gap, demi_kept *c) {
+                                 dem_vec3 gap, demi_persistent *c) {
     const int first = p->kind == DEMI_BALL;
     const demi_part *ball = first ? p : q;
     demi_d3 at;
@@ -23779,7 +23787,7 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
 /* An ellipsoid and a polyhedron, as with walls: at the point that the ellipsoid touches first when
    it is scaled, by W0. */
 static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                dem_vec3 gap, demi_kept *c) {
+                                dem_vec3 gap, demi_persistent *c) {
     const int first = p->kind == DEMI_ELLIPSOID;
     const demi_part *ellipsoid = first ? p : q;
     dem_vec3 at, n;
@@ -23799,7 +23807,7 @@ static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, co
     demi_ellipsoid_overlap(w, ellipsoid, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
     c->arm_a = dem_quat_rotate(ellipsoid->q, at);
-    demi_kept_odd(c)->outset = demi_v(0, 0, 0);
+    demi_persistent_odd(c)->outset = demi_v(0, 0, 0);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
         c->arm_a = demi_add(c->arm_a, gap);
@@ -23807,7 +23815,8 @@ static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, co
     return 1;
 }
 static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                  dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
+                                  dem_vec3 gap, double lambda, demi_persistent *c,
+                                  demi_spots *spots) {
     const int ball = p->kind == DEMI_BALL || q->kind == DEMI_BALL;
     (void)lambda; (void)spots;
     if (!(ball ? demi_solid_ball_touch : demi_solid_ellipsoid_touch)(w, p, q, gap, c)) return 0;
@@ -23819,7 +23828,7 @@ static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const 
    a range, while there is no overlap. Then the nearest point is repeated four times, since contact
    by pressure has four points. */
 static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const demi_part *q,
-                               dem_vec3 gap, demi_kept *c, demi_spots *spots) {
+                               dem_vec3 gap, demi_persistent *c, demi_spots *spots) {
     const double ra = demi_part_equal(p), rb = demi_part_equal(q);
     const double range = (double)demi_range(w, p->radius + q->radius);
     const dem_vec3 from = demi_dot(c->normal, c->normal) > 0 ? c->normal : gap;
@@ -23848,10 +23857,11 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
    common surface. c becomes the first of four contact points, which have this body's part of the
    force. */
 static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const demi_part *p,
-                           const demi_part *q, dem_vec3 gap, demi_kept *c, demi_spots *spots) {
+                           const demi_part *q, dem_vec3 gap, demi_persistent *c,
+                           demi_spots *spots) {
     const double r = demi_part_equal(o->part);
     demi_flush_press press;
-    demi_kept_more *more;
+    demi_persistent_more *more;
     demi_patch at;
     double overlap;
     if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)) ||
@@ -23865,7 +23875,7 @@ static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const d
     c->share = (dem_real)(at.force/press.force);
     c->r_eff = (dem_real)r;
     c->corners = 4;
-    more = demi_kept_odd(c);
+    more = demi_persistent_odd(c);
     more->part = c->share;
     more->couple = at.couple;
     more->spread = at.spread[0];
@@ -23876,11 +23886,12 @@ static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const d
 }
 /* Two polyhedra by their common volume. c becomes the first of four contact points. */
 static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
+                                dem_vec3 gap, double lambda, demi_persistent *c,
+                                demi_spots *spots) {
     const double ra = demi_part_equal(p), rb = demi_part_equal(q), r_eff = ra*rb/(ra + rb);
     demi_solid a, b;
     demi_patch at;
-    demi_kept_more *more;
+    demi_persistent_more *more;
     demi_pressure s;
     double overlap;
     (void)lambda;
@@ -23903,10 +23914,10 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     c->deep = (dem_real)s.deep;
     c->r_eff = (dem_real)r_eff;
     c->corners = 4;
-    more = demi_kept_odd(c);
+    more = demi_persistent_odd(c);
     more->couple = at.couple;
     more->spread = at.spread[0];
-    more->aside = at.spread[1];    /* until demi_kept_spread */
+    more->aside = at.spread[1];    /* until demi_persistent_spread */
     c->arm_a = demi_add(p->centre, at.point);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
@@ -23933,10 +23944,10 @@ DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
 /* --- overlap, arm and radius of a part's contact with a wall, from a contact point that was found
    --- */
 typedef void (*demi_on_wall_fn)(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                const demi_touching *place, demi_kept *c);
+                                const demi_touching *place, demi_persistent *c);
 /* A sphere's. */
 DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                  const demi_touching *place, demi_kept *c) {
+                                  const demi_touching *place, demi_persistent *c) {
     (void)w; (void)wall;
     c->overlap = place->overlap;
     c->deep = c->overlap/p->radius;
@@ -23945,7 +23956,7 @@ DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, con
 }
 /* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
 static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                   const demi_touching *place, demi_kept *c) {
+                                   const demi_touching *place, demi_persistent *c) {
     demi_ellipsoid_overlap(w, p, place->overlap,
                            demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0), c);
     c->arm_a = demi_add(p->centre, c->arm_a);
@@ -23953,14 +23964,14 @@ static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, co
 /* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
    set so large that demi_wall_r_eff returns the radius of these grains. */
 static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                    const demi_touching *place, demi_kept *c) {
+                                    const demi_touching *place, demi_persistent *c) {
     const int ball = demi_wall_is(wall, DEMI_BALLS);
     c->overlap = place->overlap;
     c->deep = place->deep;
     c->slope = place->slope;
     c->corner = place->corner;
     c->corners = place->corners;
-    demi_kept_odd(c)->couple = place->couple;
+    demi_persistent_odd(c)->couple = place->couple;
     c->more.spread = place->spread;
     if (place->part > 0) {
         c->wall = place->wall;
@@ -23986,17 +23997,17 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
 
 /* ---------------------------------------------------------------------------------------------
    >>continued
-   Which persistent contact of the step before a new one of >>kept continues. The functions return
-   its index within its work group, or -1. `old` and `olds` are the contacts that body a had in the
-   step before, and their number. Writes the field `from` of new contacts only.
+   Which persistent contact of the step before a new one of >>persistent continues. The functions
+   return its index within its work group, or -1. `old` and `olds` are the contacts that body a had
+   in the step before, and their number. Writes the field `from` of new contacts only.
    --------------------------------------------------------------------------------------------- */
 
 /* Returns the old contact with the same partner and parts or, at a wall, with the same wall, part,
    element and corner; -1 if there is none. */
-DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds,
-                              const demi_kept *c) {
-    const int first = (int)(old - demi_kept_of(w, d));
-    int *next = &w->domains[d].kept_same, n, i = *next - first;
+DEM_INLINE int demi_persistent_same(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                    const demi_persistent *c) {
+    const int first = (int)(old - demi_persistent_of(w, d));
+    int *next = &w->domains[d].persistent_same, n, i = *next - first;
     if (i < 0 || i >= olds) i = 0;              /* usually the one after the last match */
     for (n = 0; n < olds; n++) {
         if (old[i].element == c->element && old[i].wall == c->wall &&
@@ -24017,7 +24028,7 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
        SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
 enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
 /* The number of the surface that contact c is with. */
-static int demi_kept_surface(const dem_world *w, const demi_kept *c) {
+static int demi_persistent_surface(const dem_world *w, const demi_persistent *c) {
     return demi_surface_for(w, c->wall, c->a);
 }
 /* Returns how well old contact o (index `from`) fits contact c, which slid onto this element, or
@@ -24027,10 +24038,12 @@ static int demi_kept_surface(const dem_world *w, const demi_kept *c) {
    to each other count as one wall. On facets a contact point that begins at depth has split off an
    older one and copies its history. Copies do not add friction: each split also creates a contact
    of negative weight (>>facets). On other walls only one new contact may continue o. */
-static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
-                               const demi_kept *fresh, int freshs, const demi_kept *c) {
+static dem_real demi_persistent_slid(const dem_world *w, const demi_persistent *o, int from,
+                                     const demi_persistent *fresh, int freshs,
+                                     const demi_persistent *c) {
     const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    const demi_wall *wall = &w->walls[c->wall], *s = demi_surface_of(w, demi_kept_surface(w, c));
+    const demi_wall *wall = &w->walls[c->wall],
+        *s = demi_surface_of(w, demi_persistent_surface(w, c));
     const int crossed = demi_wall_is(s, DEMI_CROSSED), faceted = demi_faceted(s);
     const int alike = (o->weight < 0) == (c->share < 0);
     int j, taken = 0;
@@ -24050,36 +24063,38 @@ static dem_real demi_kept_slid(const dem_world *w, const demi_kept *o, int from,
 }
 /* True if two contacts, of body and wall or of two bodies, have the same partner, where walls that
    are joined to one surface are the same. */
-DEM_INLINE int demi_kept_one(const dem_world *w, const demi_kept *a, const demi_kept *b) {
+DEM_INLINE int demi_persistent_one(const dem_world *w, const demi_persistent *a,
+                                   const demi_persistent *b) {
     return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 &&
         demi_surface_number(w, a->wall) == demi_surface_number(w, b->wall));
 }
 /* Squared distance of the points of two contacts of one body, m2, as seen from its centre. */
-DEM_INLINE dem_real demi_kept_off2(const demi_kept *a, const demi_kept *b) {
+DEM_INLINE dem_real demi_persistent_off2(const demi_persistent *a, const demi_persistent *b) {
     const dem_vec3 way = demi_sub(a->arm_a, b->arm_a);
     return demi_dot(way, way);
 }
 /* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
    with this wall. */
-static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int olds,
-                          const demi_kept *fresh, int freshs, const demi_kept *c,
-                          enum demi_fit how) {
-    const int first = (int)(old - demi_kept_of(w, d));
+static int demi_persistent_best(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                const demi_persistent *fresh, int freshs, const demi_persistent *c,
+                                enum demi_fit how) {
+    const int first = (int)(old - demi_persistent_of(w, d));
     dem_real most = DEMI_FAR_OFF;
     int i, k, best = -1;
     for (i = 0; i < olds; i++) {
-        const demi_kept *o = &old[i];
+        const demi_persistent *o = &old[i];
         dem_real fit = demi_dot(o->normal, c->normal);
         if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
             o->part_a != c->part_a || o->part_b != c->part_b ||
-            (how != DEMI_FIT_SLID && !demi_kept_one(w, o, c)) ||
+            (how != DEMI_FIT_SLID && !demi_persistent_one(w, o, c)) ||
             (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
-            (o->element != c->element && how == DEMI_FIT_TURNED) || demi_kept_later(o)) continue;
-        if (how == DEMI_FIT_SLID) fit = demi_kept_slid(w, o, first + i, fresh, freshs, c);
-        if (how == DEMI_FIT_NEAREST) fit = -demi_kept_off2(o, c);
+            (o->element != c->element && how == DEMI_FIT_TURNED) ||
+            demi_persistent_later(o)) continue;
+        if (how == DEMI_FIT_SLID) fit = demi_persistent_slid(w, o, first + i, fresh, freshs, c);
+        if (how == DEMI_FIT_NEAREST) fit = -demi_persistent_off2(o, c);
         if (!(fit > most)) continue;
         for (k = 0; how == DEMI_FIT_NEAREST && k < freshs; k++)
-            if (fresh[k].from == first + i && !(demi_kept_off2(o, &fresh[k]) > -fit)) break;
+            if (fresh[k].from == first + i && !(demi_persistent_off2(o, &fresh[k]) > -fit)) break;
         if (how == DEMI_FIT_NEAREST && k < freshs) continue;
         most = fit;
         best = first + i;
@@ -24089,14 +24104,14 @@ static int demi_kept_best(const dem_world *w, int d, const demi_kept *old, int o
 /* Finds which old contacts `count` new ones of one pair or wall continue, by DEMI_FIT_NEAREST. A
    new contact takes an old one from another that is farther from it; that one looks again. So the
    order of contacts changes nothing. */
-static void demi_kept_nearest(const dem_world *w, int d, const demi_kept *old, int olds,
-                              demi_kept *fresh, int count) {
+static void demi_persistent_nearest(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                    demi_persistent *fresh, int count) {
     int i, k, next;
     for (i = 0; i < count; i++) fresh[i].from = -1;
     for (i = 0; i < count; i++)
         for (k = i; k < count; k = next) {
-            const int from = demi_kept_best(w, d, old, olds, fresh, count, &fresh[k],
-                                            DEMI_FIT_NEAREST);
+            const int from = demi_persistent_best(w, d, old, olds, fresh, count, &fresh[k],
+                                                  DEMI_FIT_NEAREST);
             for (next = 0; next < count && (from < 0 || fresh[next].from != from); next++);
             if (next < count) fresh[next].from = -1;
             fresh[k].from = from;
@@ -24104,91 +24119,93 @@ static void demi_kept_nearest(const dem_world *w, int d, const demi_kept *old, i
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>kept
+   >>persistent
    Contact detection for persistent contacts: all contacts except those of sphere on sphere (with
    springs also of spheres of clusters), which >>respond and >>members handle without such a list.
    Two such bodies may touch at several points, with normals that do not pass through their centres,
    and a body touches a wall once per nearby surface. These contacts are therefore stored one by one
-   in a list (demi_kept) and followed from step to step, so that each keeps its history.
+   in a list (demi_persistent) and followed from step to step, so that each keeps its history.
 
    The function demi_touch builds the list of the present step. It finds the contact points (part
    against part by >>meets, part against wall element by >>touch) and decides which contact of the
-   step before each one continues. >>kept-respond then continues the history, evaluates the contact
-   law and adds the forces. Within a work group the list is ordered by body a. If a list is too
-   short, demi_touch enlarges it and starts again; this loses nothing, since the old list is
+   step before each one continues. >>persistent-respond then continues the history, evaluates the
+   contact law and adds the forces. Within a work group the list is ordered by body a. If a list is
+   too short, demi_touch enlarges it and starts again; this loses nothing, since the old list is
    untouched.
    --------------------------------------------------------------------------------------------- */
 
 /* True if the law is evaluated for contact c: if the two overlap, or if the law has a range. False
    for a body on its way through a hole of a reduced sieve, whose weight is 0. */
-DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
+DEM_INLINE int demi_persistent_asked(const dem_world *w, const demi_persistent *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
 /* Prefetches what the next step needs of the contact `by` entries after k or, with `all`, the
    fields that every contact uses. That entry may lie beyond the end of the list. */
-DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by, int all) {
+DEM_INLINE void demi_persistent_ahead(const demi_persistent *k, size_t by, int all) {
     const uintptr_t at = (uintptr_t)k + by*sizeof *k;
     size_t e;
     DEMI_UNROLL
-    for (e = 0; e < offsetof(demi_kept, memory) + 3*sizeof(dem_real); e += 64)
+    for (e = 0; e < offsetof(demi_persistent, memory) + 3*sizeof(dem_real); e += 64)
         DEMI_FETCH((const void *)(at + e));
     if (!all) return;
     DEMI_UNROLL
-    for (e = offsetof(demi_kept, arm_b); e < offsetof(demi_kept, more); e += 64)
+    for (e = offsetof(demi_persistent, arm_b); e < offsetof(demi_persistent, more); e += 64)
         DEMI_FETCH((const void *)(at + e));
 }
 /* Clears all of a contact but its history, which respond writes, and `more`. */
-DEM_INLINE void demi_kept_blank(demi_kept *c) {
-    memset(c, 0, offsetof(demi_kept, memory));
-    memset(&c->arm_b, 0, offsetof(demi_kept, more) - offsetof(demi_kept, arm_b));
+DEM_INLINE void demi_persistent_blank(demi_persistent *c) {
+    memset(c, 0, offsetof(demi_persistent, memory));
+    memset(&c->arm_b, 0, offsetof(demi_persistent, more) - offsetof(demi_persistent, arm_b));
 }
 /* Appends a contact to the new list of work group d and returns it, cleared except for its history
    and `more`. Returns null if the list is full. */
-static demi_kept *demi_kept_new(dem_world *w, int d) {
+static demi_persistent *demi_persistent_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    demi_kept *c;
-    if (domain->kept_next >= w->kept_first[d + 1] - w->kept_first[d]) {
+    demi_persistent *c;
+    if (domain->persistent_next >= w->persistent_first[d + 1] - w->persistent_first[d]) {
         domain->overflow |= 16;
         return 0;
     }
-    c = w->kept_next + w->kept_first[d] + domain->kept_next++;
-    demi_kept_blank(c);
+    c = w->persistent_next + w->persistent_first[d] + domain->persistent_next++;
+    demi_persistent_blank(c);
     c->b = -1;
     c->share = c->slope = 1;
     return c;
 }
-DEM_INLINE dem_vec3 demi_kept_spread_of(const demi_kept *c) {
+DEM_INLINE dem_vec3 demi_persistent_spread_of(const demi_persistent *c) {
     return c->odd ? c->more.spread : demi_v(0, 0, 0);
 }
-DEM_INLINE dem_vec3 demi_kept_felt(const demi_kept *c) {
+DEM_INLINE dem_vec3 demi_persistent_felt(const demi_persistent *c) {
     return c->odd ? c->more.felt : demi_v(0, 0, 0);
 }
 /* Copies a new contact, for which no force has been computed yet. */
-static void demi_kept_copy(demi_kept *to, const demi_kept *from) {
-    memcpy(to, from, offsetof(demi_kept, more));
+static void demi_persistent_copy(demi_persistent *to, const demi_persistent *from) {
+    memcpy(to, from, offsetof(demi_persistent, more));
     if (from->odd) to->more = from->more;
 }
 
 /* Similarity t of two contacts of the same pair: 1 if their normals are within 25 degrees, 0 beyond
    45 degrees, smooth in between. *rate receives its derivative with respect to the cosine of that
    angle. */
-DEM_INLINE dem_real demi_kept_along(const demi_kept *a, const demi_kept *b, dem_real *rate) {
+DEM_INLINE dem_real demi_persistent_along(const demi_persistent *a, const demi_persistent *b,
+                                          dem_real *rate) {
     const dem_real zero = DEM_R(0.7071067811865476), one = DEM_R(0.9063077870366499);
     const dem_real t = (demi_dot(a->normal, b->normal) - zero)/(one - zero);
     *rate = t > 0 && t < 1 ? 6*t*(1 - t)/(one - zero) : 0;
     return !(t > 0) ? 0 : t < 1 ? t*t*(3 - 2*t) : 1;
 }
-/* Like demi_kept_along, but 0 for contacts of the same two parts: their weights already account for
-   overlap. */
-DEM_INLINE dem_real demi_kept_alike(const demi_kept *a, const demi_kept *b, dem_real *rate) {
+/* Like demi_persistent_along, but 0 for contacts of the same two parts: their weights already
+   account for overlap. */
+DEM_INLINE dem_real demi_persistent_alike(const demi_persistent *a, const demi_persistent *b,
+                                          dem_real *rate) {
     *rate = 0;
-    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_kept_along(a, b, rate);
+    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_persistent_along(a, b, rate);
 }
 /* Adds to `aside` the tangential force on contact c's sphere that arises because c's normal
    rotates towards or away from the normal `other` as the sphere moves: -(dE/dt)(dt/dcos)
    d(n.other)/dx. `push` is the product of the first two factors, over U'(d) of contact c. */
-DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
-    demi_kept_more *m = demi_kept_odd(c);
+DEM_INLINE void demi_persistent_aside(demi_persistent *c, dem_vec3 other, dem_real push) {
+    demi_persistent_more *m = demi_persistent_odd(c);
     const dem_real along = demi_dot(other, m->axis);
     dem_vec3 turn = demi_sub(other, demi_scale(c->normal, demi_dot(other, c->normal)));
     turn = demi_sub(turn, demi_scale(m->axis, along));
@@ -24197,23 +24214,25 @@ DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
 }
 /* Exponent of R* in the stiffness of a contact: 1/2 for Hertz; for a linear law 2/5, or 0 if the
    stiffness is given. */
-static dem_real demi_kept_power(const dem_world *w, const demi_kept *c) {
+static dem_real demi_persistent_power(const dem_world *w, const demi_persistent *c) {
     const int a = w->bodies.material[c->a] - 1;
     const int b = c->b < 0 ? w->walls[c->wall].material : w->bodies.material[c->b] - 1;
     if (demi_normal_is(w, DEMI_HERTZIAN)) return DEM_R(0.5);
     return w->pairs[a*DEMI_MATERIALS + b].given.stiffness > 0 ? DEM_R(0) : DEM_R(0.4);
 }
-/* Returns U'(d_i)/U'(d_k) for two contacts that overlap. q: exponent of R*, see demi_kept_power. */
-static dem_real demi_kept_steep(const demi_kept *i, const demi_kept *k, int hertz, dem_real q) {
+/* Returns U'(d_i)/U'(d_k) for two contacts that overlap. q: exponent of R*, see
+   demi_persistent_power. */
+static dem_real demi_persistent_steep(const demi_persistent *i, const demi_persistent *k, int hertz,
+                                      dem_real q) {
     const dem_real more = i->overlap/k->overlap, R = i->r_eff/k->r_eff;
     if (hertz) return more*DEMI_SQRT(more*R);
     return q > 0 && (R < 1 || R > 1) ? more*(dem_real)demi_pow((double)R, (double)q) : more;
 }
 /* Sets lift, aside and grip of the n contacts of a pair from the gradient of the merged energy E
-   (see demi_kept_share). Their shares and areas must be known. */
-static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
+   (see demi_persistent_share). Their shares and areas must be known. */
+static void demi_persistent_lift(const dem_world *w, demi_persistent *c, int n) {
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
-    const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2), q = demi_kept_power(w, c);
+    const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2), q = demi_persistent_power(w, c);
     dem_real rate;
     int i, k;
     for (k = 0; k < n; k++) {
@@ -24221,15 +24240,15 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         if (!(d > 0)) continue;
         c[k].lift = c[k].share*(1 + 2/p*c[k].more.rate*c[k].more.added*d*d/c[k].more.area);
         for (i = 0; i < n; i++) {
-            const dem_real t = i == k ? 0 : demi_kept_alike(&c[i], &c[k], &rate);
+            const dem_real t = i == k ? 0 : demi_persistent_alike(&c[i], &c[k], &rate);
             const dem_real e = c[i].overlap;
             dem_real far;                       /* E_i/(U'(d_k) A_i) */
             if (!(t > 0) || !(e > 0)) continue;
-            far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*
+            far = demi_persistent_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*
                 c[i].more.rate/c[i].more.area;
             c[k].lift -= far*2*t*c[k].weight*d;
             if (rate > 0 && !(w->margin.reach > 0))
-                demi_kept_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
+                demi_persistent_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
                                   own*c[k].more.rate/c[k].more.area*c[i].weight*e*e));
         }
     }
@@ -24237,10 +24256,10 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         dem_real lift = 0, share = 0, own = 0;
         if (!(c[k].overlap > 0)) continue;
         for (i = 0; i < n; i++) {
-            const dem_real t = i == k ? 1 : demi_kept_along(&c[i], &c[k], &rate);
+            const dem_real t = i == k ? 1 : demi_persistent_along(&c[i], &c[k], &rate);
             dem_real press;                     /* U'(d_i)/U'(d_k), times t */
             if (!(t > 0) || !(c[i].overlap > 0)) continue;
-            press = t*demi_kept_steep(&c[i], &c[k], hertz, q);
+            press = t*demi_persistent_steep(&c[i], &c[k], hertz, q);
             lift += press*c[i].lift;
             share += press*c[i].share;
             if (i == k) own = press;
@@ -24249,10 +24268,10 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         else c[k].grip = c[k].share;
     }
 }
-/* Returns A_i/d_i^2 = 1 + x of demi_kept_share, where x is the sum of the other terms over d_i^2.
-   If negative weights (>>facets) make x less than -1/2, the value decreases smoothly to no less
-   than 1/4. *rate receives its derivative with respect to x. */
-static dem_real demi_kept_room_of(dem_real x, dem_real *rate) {
+/* Returns A_i/d_i^2 = 1 + x of demi_persistent_share, where x is the sum of the other terms over
+   d_i^2. If negative weights (>>facets) make x less than -1/2, the value decreases smoothly to no
+   less than 1/4. *rate receives its derivative with respect to x. */
+static dem_real demi_persistent_room_of(dem_real x, dem_real *rate) {
     const dem_real below = DEM_R(0.0625)/(DEM_R(-0.25) - x);    /* x < -1/2 */
     *rate = x < DEM_R(-0.5) ? 16*below*below : DEM_R(1);
     return x < DEM_R(-0.5) ? DEM_R(0.25) + below : 1 + x;
@@ -24265,7 +24284,7 @@ static int demi_is_cluster(const dem_world *w, int body) {
 /* Merges contacts c[0] .. c[n - 1] of one pair, or of a body and all walls, so that together they
    act as one (DEM_CLUSTER_CONTACTS_MERGED). With overlaps d, weights w (those of >>facets,
    otherwise 1), the elastic energy U(d) of a contact and the similarity t_ij of two normals
-   (demi_kept_along),
+   (demi_persistent_along),
        A_i = d_i^2 + sum of t_ij w_j d_j^2, j not i;   s_i = w_i d_i^2/A_i;   E = sum of s_i U(d_i)
    This is a mean in which deeper contacts count more. Similar contacts together store the energy of
    one, whatever their number, and a contact that begins or ends counts nothing. Stiffness, damping
@@ -24287,7 +24306,7 @@ static int demi_is_cluster(const dem_world *w, int body) {
    of the contacts. Friction is scaled by `grip` = s (sum of lift U')/(sum of s U'), so that mu is
    the ratio of the two total forces. Tests: "a cluster landing on one, two or three spheres" and
    tests/surface/test_facets.c. */
-static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
+static void demi_persistent_share(const dem_world *w, demi_persistent *c, int n) {
     const int one = n > 1 && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED &&
         (demi_is_cluster(w, c->a) || (c->b >= 0 && demi_is_cluster(w, c->b)));
     int i, j;
@@ -24295,62 +24314,64 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         const dem_real d2 = c[i].overlap*c[i].overlap;
         dem_vec3 mean;                          /* common centre as seen from a, times A */
         dem_real A = d2, rate;
-        demi_kept_more *m;
+        demi_persistent_more *m;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
         if (c[i].odd) c[i].more.felt = c[i].more.spread;   /* polyhedra: the centre of pressure */
         if (!one || !(c[i].overlap > 0)) continue;
-        mean = demi_scale(demi_sub(c[i].arm_a, demi_kept_spread_of(&c[i])), d2);
+        mean = demi_scale(demi_sub(c[i].arm_a, demi_persistent_spread_of(&c[i])), d2);
         for (j = 0; j < n; j++) {
-            const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
+            const dem_real t = j == i ? 0 : demi_persistent_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0) || !(c[j].overlap > 0)) continue;
             A += add;
             mean = demi_add(mean, demi_scale(demi_sub(c[j].arm_a,
-                                                      demi_kept_spread_of(&c[j])), add));
+                                                      demi_persistent_spread_of(&c[j])), add));
         }
-        m = demi_kept_odd(&c[i]);
+        m = demi_persistent_odd(&c[i]);
         m->added = A/d2 - 1;
-        m->area = d2*demi_kept_room_of(m->added, &m->rate);
+        m->area = d2*demi_persistent_room_of(m->added, &m->rate);
         c[i].share = c[i].weight*d2/m->area;
         if (A > d2/2)                           /* else negative weights prevail */
             m->felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
     }
-    if (one) demi_kept_lift(w, c, n);
+    if (one) demi_persistent_lift(w, c, n);
 }
 
 /* Sets `held` of n contacts of one body with one partner or wall: the grip (weight of friction)
    that each inherits from the step before. Contacts that continue the same old one divide its grip
    in proportion to their own. Of a contact in parts all have that of all its parts. now: the old
    list of the work group. */
-static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
+static void demi_persistent_inherit(const demi_persistent *now, demi_persistent *c, int n) {
     int i, k;
     if (n == 1) { c->held = -1; return; }       /* do not load the old one yet */
     for (k = 0; k < n; k++) {
-        const dem_real own = demi_kept_whole(&c[k]);
+        const dem_real own = demi_persistent_whole(&c[k]);
         dem_real all = 0;
         if (c[k].from < 0) continue;
-        if (demi_kept_later(&c[k])) { c[k].held = c[k - c[k].corners].held; continue; }
+        if (demi_persistent_later(&c[k])) { c[k].held = c[k - c[k].corners].held; continue; }
         for (i = 0; i < n; i++)
-            if (c[i].from == c[k].from && !demi_kept_later(&c[i])) all += demi_kept_whole(&c[i]);
-        c[k].held = demi_kept_whole(&now[c[k].from]);
+            if (c[i].from == c[k].from && !demi_persistent_later(&c[i]))
+                all += demi_persistent_whole(&c[i]);
+        c[k].held = demi_persistent_whole(&now[c[k].from]);
         if (all > own) c[k].held *= own/all;
     }
 }
 /* Splits contact c of two polyhedra into the four corners of the parallelogram over which its
    pressure is spread; `spread` and `aside` are its half edges. Returns 0 if the list is full. */
-static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *old, int olds) {
-    demi_kept_more *m = demi_kept_odd(c);
+static int demi_persistent_spread(dem_world *w, int d, demi_persistent *c,
+                                  const demi_persistent *old, int olds) {
+    demi_persistent_more *m = demi_persistent_odd(c);
     const dem_vec3 one = m->spread, two = m->aside;
     dem_vec3 to = one;
     int k;
     m->aside = demi_v(0, 0, 0);
     c->share /= (dem_real)c->corners;
     for (k = c->corners - 1; k >= 0; k--) {
-        demi_kept *at = k ? demi_kept_new(w, d) : c;
+        demi_persistent *at = k ? demi_persistent_new(w, d) : c;
         if (!at) return 0;
-        if (k) demi_kept_copy(at, c);
+        if (k) demi_persistent_copy(at, c);
         at->corner = k;
-        if (k) at->from = demi_kept_same(w, d, old, olds, at);
+        if (k) at->from = demi_persistent_same(w, d, old, olds, at);
         to = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
                       demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
         at->more.spread = to;
@@ -24361,15 +24382,15 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
     }
     c->arm_a = demi_add(c->arm_a, to);
     c->arm_b = demi_add(c->arm_b, to);
-    demi_kept_turn(w, d, c);
+    demi_persistent_turn(w, d, c);
     return 1;
 }
 /* Splits contact c of two polyhedra into the points of its contact manifold `spots`. On entry
    c->arm_a and c->arm_b lead to the centre of the first polyhedron. Returns 0 if the list is
    full. */
-static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *p,
-                            const demi_part *q, const demi_spots *spots, const demi_kept *old,
-                            int olds) {
+static int demi_persistent_points(dem_world *w, int d, demi_persistent *c, const demi_part *p,
+                                  const demi_part *q, const demi_spots *spots,
+                                  const demi_persistent *old, int olds) {
     const dem_vec3 base_a = c->arm_a, base_b = c->arm_b;
     const dem_real thin = DEMI_MIN(demi_part_thin(p), demi_part_thin(q));
     const int pressing = demi_response_is(w, DEMI_PRESSING);
@@ -24378,67 +24399,68 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
     c->corners = spots->count;
     for (k = 0; k < spots->count; k++) {
         const dem_vec3 x = demi_d3_real(spots->x[k]);
-        demi_kept *at = k ? demi_kept_new(w, d) : c;
+        demi_persistent *at = k ? demi_persistent_new(w, d) : c;
         if (!at) return 0;
-        if (k) demi_kept_copy(at, c);
+        if (k) demi_persistent_copy(at, c);
         at->corner = k;
         at->arm_a = demi_add(base_a, x);
         at->arm_b = demi_add(base_b, x);
         at->overlap = (dem_real)-spots->gap[k];
         at->deep = at->overlap/thin;
-        if (pressing) at->from = demi_kept_same(w, d, old, olds, at);
+        if (pressing) at->from = demi_persistent_same(w, d, old, olds, at);
     }
-    if (!pressing) demi_kept_nearest(w, d, old, olds, c, spots->count);
+    if (!pressing) demi_persistent_nearest(w, d, old, olds, c, spots->count);
     return 1;
 }
-/* Appends a contact of part i of body a with part j of body b. send: as in demi_kept. Returns null
-   if the list is full. */
-DEM_INLINE demi_kept *demi_kept_begin(dem_world *w, int d, int a, int b, int send, int i, int j,
-                                      const demi_kept *old, int olds) {
-    demi_kept *c = demi_kept_new(w, d);
+/* Appends a contact of part i of body a with part j of body b. send: as in demi_persistent. Returns
+   null if the list is full. */
+DEM_INLINE demi_persistent *demi_persistent_begin(dem_world *w, int d, int a, int b, int send,
+                                                  int i, int j, const demi_persistent *old,
+                                                  int olds) {
+    demi_persistent *c = demi_persistent_new(w, d);
     if (!c) return 0;
     c->a = a; c->b = b; c->part_a = i; c->part_b = j;
     c->wall = c->element = -1;
     c->send = send;
-    c->from = demi_kept_same(w, d, old, olds, c);
+    c->from = demi_persistent_same(w, d, old, olds, c);
     return c;
 }
 /* Appends the contact of two parts p and q if they touch. gap: from the centre of p to that of q,
    m. Returns 0 if the list is full. */
-static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const demi_part *p,
-                           const demi_part *q, int i, int j, dem_vec3 gap, const demi_kept *old,
-                           int olds) {
-    const demi_kept *now = demi_kept_of(w, d);
-    demi_kept *c = demi_kept_begin(w, d, a, b, send, i, j, old, olds);
+static int demi_persistent_parts(dem_world *w, int d, int a, int b, int send, const demi_part *p,
+                                 const demi_part *q, int i, int j, dem_vec3 gap,
+                                 const demi_persistent *old, int olds) {
+    const demi_persistent *now = demi_persistent_of(w, d);
+    demi_persistent *c = demi_persistent_begin(w, d, a, b, send, i, j, old, olds);
     demi_spots spots;
     if (!c) return 0;
     spots.count = 0;
     if (c->from >= 0) c->normal = now[c->from].normal;      /* initial guess */
     if (!demi_meet_of(p->kind, q->kind)(w, p, q, gap, c->from < 0 ? 0 : now[c->from].lambda, c,
                                         &spots))
-        w->domains[d].kept_next--;
+        w->domains[d].persistent_next--;
     else if (w->flush.count && demi_flush_within(w, c, p, q, gap, &spots))
-        w->domains[d].kept_next--;
-    else if (spots.count ? !demi_kept_points(w, d, c, p, q, &spots, old, olds)
-             : c->corners && !demi_kept_spread(w, d, c, old, olds)) return 0;
+        w->domains[d].persistent_next--;
+    else if (spots.count ? !demi_persistent_points(w, d, c, p, q, &spots, old, olds)
+             : c->corners && !demi_persistent_spread(w, d, c, old, olds)) return 0;
     else if (w->flush.count && !spots.count) demi_flush_follow(w, c, p, q);
     return 1;
 }
 /* Appends the contact of two spheres of neighbouring bodies if they touch; most do not. one, other:
    their rows (centre from the body's, radius, m); to: from sphere i's centre to the centre of body
    b, m. Returns 0 if the list is full. */
-DEM_INLINE int demi_kept_two(dem_world *w, int d, int a, int b, int send, int i, int j,
-                             const dem_real *one, const dem_real *other, dem_vec3 to,
-                             const demi_kept *old, int olds) {
+DEM_INLINE int demi_persistent_two(dem_world *w, int d, int a, int b, int send, int i, int j,
+                                   const dem_real *one, const dem_real *other, dem_vec3 to,
+                                   const demi_persistent *old, int olds) {
     const dem_vec3 gap = demi_add(to, demi_at(other));
     const dem_real radii = one[3] + other[3];
     const dem_real near_by = w->margin.reach > 0 ? radii + demi_range(w, radii) : radii;
-    demi_kept *c;
+    demi_persistent *c;
     if (!(demi_dot(gap, gap) < near_by*near_by)) return 1;
-    c = demi_kept_begin(w, d, a, b, send, i, j, old, olds);
+    c = demi_persistent_begin(w, d, a, b, send, i, j, old, olds);
     if (!c) return 0;
     if (!demi_balls_meet(w, demi_at(one), one[3], demi_at(other), other[3], gap, c))
-        w->domains[d].kept_next--;
+        w->domains[d].persistent_next--;
     return 1;
 }
 /* Lists the pairs of spheres of bodies a and b that may touch while the pruned neighbour list is
@@ -24466,8 +24488,9 @@ static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const 
 /* Appends all contacts of a candidate pair of spheres and clusters, entry `at` of the pruned
    neighbour list. r: from a's centre to b's, m; old: the contacts of body a in the step before.
    Returns 0 if the list is full. */
-static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, const dem_real *x,
-                           int na, const dem_real *y, int nb, const demi_kept *old, int olds) {
+static int demi_persistent_balls(dem_world *w, int d, int at, int send, dem_vec3 r,
+                                 const dem_real *x, int na, const dem_real *y, int nb,
+                                 const demi_persistent *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
     const dem_real far_b = demi_radius(w, b) + (dem_real)w->margin.reach;
     demi_near_balls *some = w->near.balls + at;
@@ -24476,8 +24499,8 @@ static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, co
     if (some->count != DEMI_BALLS_ALL) {
         for (k = 0; k < some->count; k++) {
             const dem_real *one = x + 4*(i = some->a[k]), *other = y + 4*(j = some->b[k]);
-            if (!demi_kept_two(w, d, a, b, send, i, j, one, other, demi_sub(r, demi_at(one)), old,
-                               olds)) return 0;
+            if (!demi_persistent_two(w, d, a, b, send, i, j, one, other, demi_sub(r, demi_at(one)),
+                                     old, olds)) return 0;
         }
         return 1;
     }
@@ -24486,13 +24509,14 @@ static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, co
         const dem_real all = x[4*i + 3] + far_b;
         if (na > 1 && !(demi_dot(to, to) < all*all)) continue;
         for (j = 0; j < nb; j++)
-            if (!demi_kept_two(w, d, a, b, send, i, j, x + 4*i, y + 4*j, to, old, olds)) return 0;
+            if (!demi_persistent_two(w, d, a, b, send, i, j, x + 4*i, y + 4*j, to, old, olds))
+                return 0;
     }
     return 1;
 }
 /* The same for bodies of any parts. */
-static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
-                         const demi_kept *old, int olds) {
+static int demi_persistent_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
+                               const demi_persistent *old, int olds) {
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
     const dem_real rb = demi_radius(w, b) + (dem_real)w->margin.reach;
     int i, j;
@@ -24505,27 +24529,28 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
             const dem_vec3 gap = demi_add(to, q.centre);
             const dem_real near_by = p.radius + q.radius + demi_range(w, p.radius + q.radius);
             if (demi_dot(gap, gap) < near_by*near_by &&
-                !demi_kept_parts(w, d, a, b, send, &p, &q, i, j, gap, old, olds)) return 0;
+                !demi_persistent_parts(w, d, a, b, send, &p, &q, i, j, gap, old, olds)) return 0;
         }
     }
     return 1;
 }
 /* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch: row k of a
    tile. It is the only contact of its pair, so all its weights are 1. */
-static void demi_kept_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, int k, int send) {
+static void demi_persistent_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, int k,
+                                       int send) {
     const int at = d*w->near.stride + t->entry[k];
     demi_part p, q;
-    demi_kept *c;
+    demi_persistent *c;
     if (!demi_ellipsoids_meet(t, k)) return;
-    c = demi_kept_new(w, d);
+    c = demi_persistent_new(w, d);
     if (!c) return;
-    demi_kept_ahead(c, 2, 1);
+    demi_persistent_ahead(c, 2, 1);
     c->a = w->near.a[at]; c->b = w->near.b[at];
     c->wall = c->element = -1;
     c->send = send;
     c->from = t->from[k];
     c->weight = c->lift = c->grip = 1;
-    c->held = -1;                               /* as demi_kept_past for one contact */
+    c->held = -1;                               /* as demi_persistent_past for one contact */
     if (w->desc.ellipsoid_overlap != DEM_OVERLAP_CONSERVATIVE) {
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);
@@ -24537,34 +24562,35 @@ static void demi_kept_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, in
                         demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at)));
 }
 /* Finds the contacts of one candidate pair, then merges them and passes grip on. */
-static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
-                                      int olds) {
-    const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
+static DEMI_APART void demi_persistent_pair(dem_world *w, int d, int at, int send,
+                                            const demi_persistent *old, int olds) {
+    const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].persistent_next;
     const dem_vec3 r = demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at));
     const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
     const dem_real far = radii + (dem_real)w->margin.reach;
-    const demi_kept *now = demi_kept_of(w, d);
-    demi_kept *from = w->kept_next + w->kept_first[d] + first;
+    const demi_persistent *now = demi_persistent_of(w, d);
+    demi_persistent *from = w->persistent_next + w->persistent_first[d] + first;
     const dem_real *x, *y;
     int na, nb, count;
     if (!(demi_dot(r, r) < far*far)) return;
     x = demi_balls_of(w, a, &na);
     y = demi_balls_of(w, b, &nb);
-    if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
-          : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
-    count = w->domains[d].kept_next - first;
+    if (!(x && y ? demi_persistent_balls(w, d, at, send, r, x, na, y, nb, old, olds)
+          : demi_persistent_any(w, d, a, b, send, r, old, olds))) return;
+    count = w->domains[d].persistent_next - first;
     if (!count) return;
-    demi_kept_share(w, from, count);
-    demi_kept_inherit(now, from, count);
+    demi_persistent_share(w, from, count);
+    demi_persistent_inherit(now, from, count);
 }
 /* Finds the contacts of entry p of the pruned list of work group d: of ellipsoids from tile t,
    which is filled again, before `end`, when it is used up; those of others individually. */
-DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send,
-                                demi_ellipsoid_tile *t, const demi_kept *old, int olds) {
+DEM_INLINE void demi_persistent_entry(dem_world *w, int d, int p, int end, int send,
+                                      demi_ellipsoid_tile *t, const demi_persistent *old,
+                                      int olds) {
     if (p >= t->end) demi_ellipsoids_find(w, d, p, end, t);
     if (t->next < t->count && t->entry[t->next] == p)
-        demi_kept_ellipsoids(w, d, t, t->next++, send);
-    else demi_kept_pair(w, d, d*w->near.stride + p, send, old, olds);
+        demi_persistent_ellipsoids(w, d, t, t->next++, send);
+    else demi_persistent_pair(w, d, d*w->near.stride + p, send, old, olds);
 }
 
 /* Handles a body whose centre has passed through an open surface, which repels on both sides: from
@@ -24573,14 +24599,14 @@ DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send,
    one: 2 - deep. This does not apply at the end of a surface, which repels a polyhedron on both
    sides for a while. old: contacts of the body in the step before; fresh: all its new ones with
    this wall. */
-static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds,
-                              const demi_kept *fresh, int count, demi_kept *c) {
+static void demi_persistent_through(const dem_world *w, const demi_persistent *old, int olds,
+                                    const demi_persistent *fresh, int count, demi_persistent *c) {
     int e, i;
     for (e = 0; e < olds && c->corners; e++)
-        if (old[e].b < 0 && demi_kept_one(w, &old[e], c) && old[e].part_a == c->part_a &&
+        if (old[e].b < 0 && demi_persistent_one(w, &old[e], c) && old[e].part_a == c->part_a &&
             demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
-        if (old[e].b >= 0 || !demi_kept_one(w, &old[e], c) || old[e].part_a != c->part_a ||
+        if (old[e].b >= 0 || !demi_persistent_one(w, &old[e], c) || old[e].part_a != c->part_a ||
             old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5)) continue;
         for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
         if (i == count) c->deep = 2 - c->deep;
@@ -24602,18 +24628,18 @@ static int demi_place_near(const dem_world *w, const demi_wall *wall, const demi
 /* Appends the contacts of part k of a body with one wall, then decides which old one each
    continues. shaped: 0 for a sphere, for which the compiler makes a specialised copy; the weights
    of its contact points remain those that were found. */
-DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
-                                  const demi_part *p, const demi_kept *old, int olds) {
+DEM_INLINE void demi_persistent_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
+                                        const demi_part *p, const demi_persistent *old, int olds) {
     const demi_wall *wall = v->wall;
     const int d = v->d;
     const dem_vec3 at = v->at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
     demi_touching *found = w->touching + w->domains[d].touching_first;
     const int places = demi_touches[wall->kind][p->kind](v, p, found);
-    demi_kept *fresh = 0, *c;
+    demi_persistent *fresh = 0, *c;
     int i, e, count = 0;
     for (i = 0; i < places; i++) {
         if (shaped && w->margin.reach > 0 && !demi_place_near(w, wall, p, at, &found[i])) continue;
-        c = demi_kept_new(w, d);
+        c = demi_persistent_new(w, d);
         if (!c) return;
         if (!count++) fresh = c;
         c->a = body;
@@ -24630,28 +24656,28 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
                                DEMI_MAX(p->radius - c->overlap, p->radius/10),
                                demi_add(found[i].point, c->shift), c);
         } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
-        /* the point of the wall, until demi_kept_cover; points of gaps are half way */
+        /* the point of the wall, until demi_persistent_cover; points of gaps are half way */
         if (v->several)
             c->arm_b = demi_sub(found[i].point,
                                 demi_scale(c->normal, c->corners ? c->overlap/2 : 0));
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     if (shaped && count && fresh->corners && !demi_response_is(w, DEMI_PRESSING))
-        demi_kept_nearest(w, d, old, olds, fresh, count);
+        demi_persistent_nearest(w, d, old, olds, fresh, count);
     else
         for (i = 0, c = fresh; i < count; i++, c++)
-            c->from = !shaped || !c->corners ? demi_kept_same(w, d, old, olds, c)
-                : demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_TURNED);
+            c->from = !shaped || !c->corners ? demi_persistent_same(w, d, old, olds, c)
+                : demi_persistent_best(w, d, old, olds, fresh, count, c, DEMI_FIT_TURNED);
     for (i = 0, c = fresh; i < count; i++, c++) {
-        if (demi_kept_later(c)) c->from = demi_kept_part(w, d, &old[olds], c);
+        if (demi_persistent_later(c)) c->from = demi_persistent_part(w, d, &old[olds], c);
         else if (c->from < 0 && olds)
-            c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
-        if (c->corner == 3) demi_kept_turn(w, d, c - 3);
-        if (c->deep > DEM_R(0.1) && olds) demi_kept_through(w, old, olds, fresh, count, c);
+            c->from = demi_persistent_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
+        if (c->corner == 3) demi_persistent_turn(w, d, c - 3);
+        if (c->deep > DEM_R(0.1) && olds) demi_persistent_through(w, old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* stays in the hole until through */
             if (old[e].b < 0 && old[e].wall == c->wall && old[e].part_a == k && c->overlap > 0 &&
-                !demi_kept_asked(w, &old[e])) c->weight = c->lift = c->grip = c->share = 0;
+                !demi_persistent_asked(w, &old[e])) c->weight = c->lift = c->grip = c->share = 0;
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
@@ -24666,8 +24692,8 @@ DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
 }
 /* Finds all contacts of one body with one surface: candidates first .. last - 1 of work group d.
    several: 1 if other surfaces are near the body. */
-static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, int several,
-                                      const demi_kept *old, int olds) {
+static DEMI_APART void demi_persistent_wall(dem_world *w, int d, int first, int last, int several,
+                                            const demi_persistent *old, int olds) {
     const int body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
     demi_view v = demi_view_of(w, d, first, last);
@@ -24677,7 +24703,7 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
     if ((v.late = demi_walls_late(w, body))) v.gone = DEM_R(1e30);     /* gaps: half a step ahead */
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
-        demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
+        demi_persistent_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
         return;
     }
     balls = demi_balls_of(w, body, &count);
@@ -24686,24 +24712,26 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
         if (balls && demi_ball_clear(&v, demi_add(demi_at(w->bodies.pos + 4*body),
                                                   demi_at(balls + 4*k)), balls[4*k + 3])) continue;
         p = demi_part_now(w, body, k);
-        demi_kept_on_wall(w, &v, body, 1, k, &p, old, olds);
+        demi_persistent_on_wall(w, &v, body, 1, k, &p, old, olds);
     }
 }
 /* True if two contacts of one body with walls belong to the same surface: same part, and walls at
    rest relative to each other. */
-DEM_INLINE int demi_kept_beside(const dem_world *w, const demi_kept *a, const demi_kept *b) {
+DEM_INLINE int demi_persistent_beside(const dem_world *w, const demi_persistent *a,
+                                      const demi_persistent *b) {
     return a->part_a == b->part_a && w->walls[a->wall].group == w->walls[b->wall].group;
 }
 /* Returns the (not normalised) weight with which contact c takes part in the negative weight of
    contact e: the similarity of their normals over the squared distance of their points. It is 0 if
    the two do not belong to the same surface, and dominates if their points coincide. */
-static double demi_kept_nearness(const dem_world *w, const demi_kept *e, const demi_kept *c) {
+static double demi_persistent_nearness(const dem_world *w, const demi_persistent *e,
+                                       const demi_persistent *c) {
     const dem_vec3 d = demi_add(demi_sub(c->arm_a, e->arm_a),
         demi_sub(demi_scale(e->normal, e->overlap), demi_scale(c->normal, c->overlap)));
     const double hair = 1e-9*(double)e->r_eff;
     dem_real rate;
-    if (!(c->weight > 0) || !(c->overlap > 0) || !demi_kept_beside(w, e, c)) return 0;
-    return (double)demi_kept_along(e, c, &rate)/((double)demi_dot(d, d) + hair*hair);
+    if (!(c->weight > 0) || !(c->overlap > 0) || !demi_persistent_beside(w, e, c)) return 0;
+    return (double)demi_persistent_along(e, c, &rate)/((double)demi_dot(d, d) + hair*hair);
 }
 /* Removes the friction of contacts with negative weight (where rows of a sieve cross, or at the
    edge of a valley of facets): a sliding contact with negative friction would supply energy. The
@@ -24711,17 +24739,19 @@ static double demi_kept_nearness(const dem_world *w, const demi_kept *e, const d
    instead, mostly that of the nearest. A contact that is cancelled entirely has no friction. Two
    contacts that begin as one together hold what the one held. mu remains the ratio of the two total
    forces. */
-static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
+static void demi_persistent_crossed(const dem_world *w, demi_persistent *c, int n) {
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
     int i, k;
     for (k = 0; k < n; k++) {
         double all = 0;
         if (!(c[k].weight < 0)) continue;
         c[k].grip = 0;
-        for (i = 0; i < n && c[k].overlap > 0; i++) all += demi_kept_nearness(w, &c[k], &c[i]);
+        for (i = 0; i < n && c[k].overlap > 0; i++)
+            all += demi_persistent_nearness(w, &c[k], &c[i]);
         for (i = 0; i < n && all > 0; i++) {
-            const dem_real part = (dem_real)(demi_kept_nearness(w, &c[k], &c[i])/all);
-            if (part > 0) c[i].held += part*c[k].weight*demi_kept_steep(&c[k], &c[i], hertz, 0);
+            const dem_real part = (dem_real)(demi_persistent_nearness(w, &c[k], &c[i])/all);
+            if (part > 0)
+                c[i].held += part*c[k].weight*demi_persistent_steep(&c[k], &c[i], hertz, 0);
         }
     }
     for (k = 0; k < n; k++) {                   /* held: the reduction, until it is applied */
@@ -24731,35 +24761,36 @@ static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
 }
 /* If a contact with a surface ends at depth, because another one has replaced it, its springs pass
    to the contact with the most similar normal: that contact's `send` names the one that ended. */
-static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int olds,
-                            demi_kept *c, int n) {
-    const int first = (int)(old - demi_kept_of(w, d));
+static void demi_persistent_ended(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                  demi_persistent *c, int n) {
+    const int first = (int)(old - demi_persistent_of(w, d));
     int e, i;
     for (e = 0; e < olds; e++) {
         const demi_wall *wall = old[e].b >= 0 ? 0
-            : demi_surface_of(w, demi_kept_surface(w, &old[e]));
+            : demi_surface_of(w, demi_persistent_surface(w, &old[e]));
         dem_real nearest = DEM_R(0.95);
-        demi_kept *heir = 0;
-        if (!wall || !(old[e].grip > 0) || demi_kept_later(&old[e]) ||
+        demi_persistent *heir = 0;
+        if (!wall || !(old[e].grip > 0) || demi_persistent_later(&old[e]) ||
             !(demi_faceted(wall) || demi_wall_is(wall, DEMI_CROSSED))) continue;
         for (i = 0; i < n && c[i].from != first + e; i++) {
             const dem_real along = demi_dot(old[e].normal, c[i].normal);
-            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 || demi_kept_later(&c[i]) ||
+            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 ||
+                demi_persistent_later(&c[i]) ||
                 c[i].corner != old[e].corner ||
-                !(2*old[e].overlap > c[i].overlap) || !demi_kept_beside(w, &old[e], &c[i]))
+                !(2*old[e].overlap > c[i].overlap) || !demi_persistent_beside(w, &old[e], &c[i]))
                 continue;
             nearest = along;
             heir = &c[i];
         }
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
-    for (i = 0; i < n; i++) if (demi_kept_later(&c[i])) c[i].send = c[i - c[i].corners].send;
+    for (i = 0; i < n; i++) if (demi_persistent_later(&c[i])) c[i].send = c[i - c[i].corners].send;
 }
 /* True if the point of c on its wall lies on a surface, such as another one. first, last: the
    candidates of the body in work group d; level: only facets across the normal count. Planes,
    cylinders and surfaces of facets can cover others. */
-static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, const demi_kept *c,
-                             int surface, int level) {
+static int demi_persistent_lies_on(const dem_world *w, int d, int first, int last,
+                                   const demi_persistent *c, int surface, int level) {
     const demi_wall *wall = demi_surface_of(w, surface);
     const dem_vec3 n = demi_unrotate(wall->pose.rotation, c->normal);
     const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
@@ -24779,8 +24810,8 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
 }
 /* True if contact c is by the plane of its facet, so that it stays where surfaces abut: only points
    of polyhedra, of which a facet may have several. */
-static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
-    const demi_wall *wall = demi_surface_of(w, demi_kept_surface(w, c));
+static int demi_persistent_flush(const dem_world *w, const demi_persistent *c) {
+    const demi_wall *wall = demi_surface_of(w, demi_persistent_surface(w, c));
     const int32_t element = wall->scale ? c->element%wall->number_count : c->element;
     return c->corners && demi_faceted(wall) && element < wall->element_count &&
         DEMI_ABS(demi_dot(demi_at(wall->planes + 4*element),
@@ -24788,7 +24819,7 @@ static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
 }
 /* True if several surfaces are near a body and one of them may have edges. wall: the surfaces of
    its candidates. */
-DEM_INLINE int demi_kept_several(const dem_world *w, const int32_t *wall, int count) {
+DEM_INLINE int demi_persistent_several(const dem_world *w, const int32_t *wall, int count) {
     int i, edges = 0;
     for (i = 0; i < count && wall[0] != wall[count - 1]; i++)
         edges |= !demi_wall_is(demi_surface_of(w, wall[i]), DEMI_SMOOTH);
@@ -24799,23 +24830,23 @@ DEM_INLINE int demi_kept_several(const dem_world *w, const int32_t *wall, int co
    surface covers the edge. Of contacts that lie on each other's surface, one on a face covers one
    on an edge; of two on faces or on edges the first remains. walled: the first contact of the body
    with walls. */
-static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled) {
-    demi_kept *c = w->kept_next + w->kept_first[d];
-    const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
+static void demi_persistent_cover(dem_world *w, int d, int first, int last, int walled) {
+    demi_persistent *c = w->persistent_next + w->persistent_first[d];
+    const int all = w->domains[d].persistent_next, pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, left = walled;
     for (i = walled; i < all; i++) {
-        const int own = demi_kept_surface(w, &c[i]);
+        const int own = demi_persistent_surface(w, &c[i]);
         int covered = 0, level;
-        if (demi_kept_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
+        if (demi_persistent_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
         for (k = walled; k < all && !covered; k++) {
-            const int other = demi_kept_surface(w, &c[k]);
+            const int other = demi_persistent_surface(w, &c[k]);
             if (other == own || c[k].part_a != c[i].part_a || c[k].a < 0) continue;
-            if (!demi_kept_lies_on(w, d, first, last, &c[i], other, 0)) continue;
-            covered = demi_kept_flush(w, &c[k]) ||
-                !demi_kept_lies_on(w, d, first, last, &c[k], own, 0);
+            if (!demi_persistent_lies_on(w, d, first, last, &c[i], other, 0)) continue;
+            covered = demi_persistent_flush(w, &c[k]) ||
+                !demi_persistent_lies_on(w, d, first, last, &c[k], own, 0);
             if (covered) continue;
-            level = demi_kept_lies_on(w, d, first, last, &c[i], own, 1);
-            covered = level == demi_kept_lies_on(w, d, first, last, &c[k], other, 1)
+            level = demi_persistent_lies_on(w, d, first, last, &c[i], own, 1);
+            covered = level == demi_persistent_lies_on(w, d, first, last, &c[k], other, 1)
                 ? k < i : !level;
         }
         if (covered) c[i].a = -1;               /* it leaves the list below */
@@ -24823,27 +24854,28 @@ static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled
     for (i = walled; i < all; i++) {
         if (c[i].a < 0) continue;
         c[i].arm_b = demi_v(0, 0, 0);
-        if (i > left) demi_kept_copy(&c[left], &c[i]);
+        if (i > left) demi_persistent_copy(&c[left], &c[i]);
         left++;
     }
-    w->domains[d].kept_next = left;
+    w->domains[d].persistent_next = left;
 }
 /* Completes the contacts of one body with walls once all are found: the weights of friction, and
    which springs of the step before each inherits. */
-static void demi_kept_settle(const dem_world *w, int d, const demi_kept *old, int olds,
-                             demi_kept *c, int n) {
-    const demi_kept *now = demi_kept_of(w, d);
+static void demi_persistent_settle(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                   demi_persistent *c, int n) {
+    const demi_persistent *now = demi_persistent_of(w, d);
     if (n == 1 && olds <= 1) { c->held = -1; return; }      /* do not load the old one yet */
-    demi_kept_crossed(w, c, n);
-    demi_kept_ended(w, d, old, olds, c, n);
-    demi_kept_inherit(now, c, n);
+    demi_persistent_crossed(w, c, n);
+    demi_persistent_ended(w, d, old, olds, c, n);
+    demi_persistent_inherit(now, c, n);
 }
 
 /* Finds all persistent contacts of one work group in the order of body a. Each body has its pairs
    within the group first, then its pairs with other groups, then its walls. */
-static void demi_domain_kept_touch(dem_world *w, int d) {
+static void demi_domain_persistent_touch(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_kept *old = demi_kept_of(w, d), *end = old + domain->kept, *old_end;
+    const demi_persistent *old = demi_persistent_of(w, d), *old_end;
+    const demi_persistent *end = old + domain->persistent;
     const int32_t *near_a = w->near.a + d*w->near.stride;
     const int32_t *body = w->wall_body + d*w->wall_stride, *wall = w->wall_id + d*w->wall_stride;
     const dem_real *gap = w->wall_gap + d*w->wall_stride;
@@ -24857,7 +24889,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     own.end = cross.end = ellipsoids ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
     own.old = own.after = cross.old = cross.after = old;
-    domain->kept_next = domain->kept_same = 0;
+    domain->persistent_next = domain->persistent_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered || (w->bodies.shaped && demi_response_is(w, DEMI_LAWS)))
         demi_balls_place(w, domain->begin, domain->end);
@@ -24872,44 +24904,45 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* hardware does not prefetch this */
         if (k + DEMI_LANES < walls) DEMI_FETCH(w->bodies.pos + 4*body[k + DEMI_LANES]);
         for (; p < own_end && near_a[p] == a; p++)
-            demi_kept_entry(w, d, p, own_end, 0, &own, old, (int)(old_end - old));
+            demi_persistent_entry(w, d, p, own_end, 0, &own, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
-            demi_kept_entry(w, d, q, cross_end, 1 + w->near.k[base + q], &cross, old,
-                            (int)(old_end - old));
-        walled = domain->kept_next;
+            demi_persistent_entry(w, d, q, cross_end, 1 + w->near.k[base + q], &cross, old,
+                                  (int)(old_end - old));
+        walled = domain->persistent_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
-        several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
+        several = from < end_k && demi_persistent_several(w, wall + from, end_k - from);
         for (; k < end_k; k = last) {
             last = k + 1;
             if (gap[k] > gone) continue;
             while (last < end_k && wall[last] == wall[k]) last++;
-            demi_kept_wall(w, d, k, last, several, old, (int)(old_end - old));
+            demi_persistent_wall(w, d, k, last, several, old, (int)(old_end - old));
         }
-        if (several && domain->kept_next > walled) demi_kept_cover(w, d, from, end_k, walled);
-        if (domain->kept_next > walled) {
-            demi_kept *c = w->kept_next + w->kept_first[d] + walled;
-            const int n = domain->kept_next - walled;
-            if (demi_shape_of(w, a)) demi_kept_share(w, c, n);
-            demi_kept_settle(w, d, old, (int)(old_end - old), c, n);
+        if (several && domain->persistent_next > walled)
+            demi_persistent_cover(w, d, from, end_k, walled);
+        if (domain->persistent_next > walled) {
+            demi_persistent *c = w->persistent_next + w->persistent_first[d] + walled;
+            const int n = domain->persistent_next - walled;
+            if (demi_shape_of(w, a)) demi_persistent_share(w, c, n);
+            demi_persistent_settle(w, d, old, (int)(old_end - old), c, n);
         }
     }
 }
 /* Enlarges the lists of work groups that overflowed. Returns 0 if memory ran out; nothing has
    changed then. */
-static int demi_kept_widen(dem_world *w) {
+static int demi_persistent_widen(dem_world *w) {
     int first[DEMI_DOMAINS + 1], d;
     for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
-        const int had = w->kept_first[d + 1] - w->kept_first[d];
+        const int had = w->persistent_first[d + 1] - w->persistent_first[d];
         const int more = d < w->domain_count && w->domains[d].overflow & 16 ? had/2 + 64 : 0;
         first[d + 1] = first[d] + had + more;
     }
-    if (!DEMI_GROW(w, w->kept_next, (size_t)first[DEMI_DOMAINS]) ||
-        !DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]) ||
+    if (!DEMI_GROW(w, w->persistent_next, (size_t)first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(w, w->persistent_now, (size_t)first[DEMI_DOMAINS]) ||
         !DEMI_GROW(w, w->coefs, 2*(size_t)first[DEMI_DOMAINS])) return 0;
     for (d = w->domain_count - 1; d > 0; d--)
-        memmove(w->kept_now + first[d], demi_kept_of(w, d),
-                (size_t)w->domains[d].kept*sizeof(demi_kept));
-    memcpy(w->kept_first, first, sizeof w->kept_first);
+        memmove(w->persistent_now + first[d], demi_persistent_of(w, d),
+                (size_t)w->domains[d].persistent*sizeof(demi_persistent));
+    memcpy(w->persistent_first, first, sizeof w->persistent_first);
     for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;
     return 1;
 }
@@ -24917,22 +24950,22 @@ static int demi_kept_widen(dem_world *w) {
 static int demi_touch(dem_world *w) {
     int d, again;
     w->margin.seen = demi_foreseen(w);
-    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
+    for (d = 0; d < w->domain_count; d++) w->domains[d].persistent_next = 0;
     if (!w->wall_count && !w->bodies.shaped && !w->effects.clustered) return 1;
     if ((!w->facets_valid && !demi_surfaces_make(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w)) ||
         (!w->flush.valid && !demi_flush_make(w))) return 0;
     demi_surfaces_follow(w);
     do {
-        demi_domains_do(w, demi_domain_kept_touch);
+        demi_domains_do(w, demi_domain_persistent_touch);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
-        if (again && !demi_kept_widen(w)) return 0;
+        if (again && !demi_persistent_widen(w)) return 0;
     } while (again);
     return 1;
 }
 /* Sets what a contact does not use, and its row of coefficients, to 0, since files and messages
    contain all of it. */
-static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
+static void demi_persistent_tidy(const dem_world *w, demi_persistent *c) {
     int e;
     c->row = 0;
     for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;
@@ -24942,7 +24975,8 @@ static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
 /* ---------------------------------------------------------------------------------------------
    >>points
    Forces of contacts at points of bodies: of member spheres (>>members) and persistent contacts
-   (>>kept-respond), with bodies and walls, a tile at a time. Those two fill the tile: who touches,
+   (>>persistent-respond), with bodies and walls,
+       a tile at a time. Those two fill the tile: who touches,
    the arms from both centres to the contact, the relative motion of the centres, coefficients,
    weights and history. A wall is a body b with zero arm: velocities are relative to its surface at
    the contact. This part computes effective masses and the motion at the contact, evaluates the
@@ -25056,8 +25090,9 @@ DEMI_POINT_STAGE(demi_points_torques_weighted, demi_point_torques(t, q, 1, 1))
 
 /* True if two weights differ. */
 DEM_INLINE int demi_differ(dem_real a, dem_real b) { return a < b || a > b; }
-/* Sets the weights of row q to those of contact c (demi_kept). */
-DEM_INLINE void demi_points_weights(const dem_world *w, demi_points *t, int q, const demi_kept *c) {
+/* Sets the weights of row q to those of contact c (demi_persistent). */
+DEM_INLINE void demi_points_weights(const dem_world *w, demi_points *t, int q,
+                                    const demi_persistent *c) {
     t->share[q] = c->share;
     t->grip[q] = c->grip;
     t->slope[q] = c->slope;
@@ -25198,7 +25233,7 @@ static void demi_points_finish(dem_world *w, int d, demi_points *t) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>kept-respond
+   >>persistent-respond
    Response of persistent contacts. For each contact it finds the coefficients, which contacts of
    one kind share (demi_coefs_row), and the history that it continues, and fills tiles of >>points.
    It also gathers the forces on bodies of later work groups, which wait in slots, for all contacts.
@@ -25207,7 +25242,8 @@ static void demi_points_finish(dem_world *w, int d, demi_points *t) {
 
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
    the square root of m_eff (`root`). */
-static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out, dem_real *root) {
+static void demi_persistent_coefs(const dem_world *w, const demi_persistent *k, dem_real *out,
+                                  dem_real *root) {
     const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
     const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
     /* here a grain of a wall has mass */
@@ -25231,7 +25267,8 @@ static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
     return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
 }
 /* Copies the history from the contact that c continues. */
-DEM_INLINE void demi_kept_recall(const dem_world *w, const demi_kept *now, demi_kept *c) {
+DEM_INLINE void demi_persistent_recall(const dem_world *w, const demi_persistent *now,
+                                       demi_persistent *c) {
     int e;
     if (c->from == DEMI_TAKEN_OVER) return;
     for (e = 0; e < w->memory_stride; e++) {
@@ -25241,8 +25278,8 @@ DEM_INLINE void demi_kept_recall(const dem_world *w, const demi_kept *now, demi_
 }
 /* Makes room for the coefficients of `more` contacts of work group d. Returns 0 if its rows are
    empty, so that no contact has one yet. */
-static int demi_kept_rows_begin(dem_world *w, int d, int more) {
-    const int room = 2*(w->kept_first[d + 1] - w->kept_first[d]);
+static int demi_persistent_rows_begin(dem_world *w, int d, int more) {
+    const int room = 2*(w->persistent_first[d + 1] - w->persistent_first[d]);
     if (w->domains[d].coefs + more > room) w->domains[d].coefs = 0;
     return w->domains[d].coefs > 0;
 }
@@ -25250,10 +25287,10 @@ static int demi_kept_rows_begin(dem_world *w, int d, int more) {
    in the step before; otherwise one of the first few rows, or a new one. Masses, materials and
    shapes stay the same while lists are valid: growth drops the lists, and ghosts have their masses
    when forces are computed. */
-DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c,
-                                               const demi_kept *old, int known) {
+DEM_INLINE const demi_coefs_row *demi_persistent_row(dem_world *w, int d, demi_persistent *c,
+                                                     const demi_persistent *old, int known) {
     enum { FEW = 8 };
-    demi_coefs_row *rows = w->coefs + 2*(size_t)w->kept_first[d], key, *row;
+    demi_coefs_row *rows = w->coefs + 2*(size_t)w->persistent_first[d], key, *row;
     int *count = &w->domains[d].coefs, i, most = DEMI_MIN(*count, FEW);
     const int32_t *shape = w->bodies.shape;
     if (known && old->wall == c->wall && old->row >= 0 && old->row < *count &&
@@ -25275,7 +25312,7 @@ DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c
     if (i < most) return row;
     memcpy(row, &key, offsetof(demi_coefs_row, m_eff));
     row->m_eff = c->b < 0 && !key.shape[0] ? w->bodies.mass[c->a] : 0;
-    demi_kept_coefs(w, c, row->coef, row->root);
+    demi_persistent_coefs(w, c, row->coef, row->root);
     return row;
 }
 /* Returns the history that contact c continues: zeros, that of its old contact, or that with the
@@ -25284,15 +25321,17 @@ DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c
    falls, the spring keeps its length. The reverse would create energy. A contact that has ended in
    this one is merged first: the weighted mean of both springs stores no more energy than the two
    did. */
-static const dem_real *demi_kept_past(const dem_world *w, const demi_kept *now, demi_kept *c) {
-    const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
-    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? demi_kept_whole(&now[c->from]) : c->held;
-    const dem_real more = ended ? demi_kept_whole(ended) : 0, all = held + more;
-    const dem_real grip = demi_kept_whole(c), left = grip > all ? all/grip : 1;
+static const dem_real *demi_persistent_past(const dem_world *w, const demi_persistent *now,
+                                            demi_persistent *c) {
+    const demi_persistent *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
+    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? demi_persistent_whole(&now[c->from])
+        : c->held;
+    const dem_real more = ended ? demi_persistent_whole(ended) : 0, all = held + more;
+    const dem_real grip = demi_persistent_whole(c), left = grip > all ? all/grip : 1;
     int k;
     if (c->from >= 0 && (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)))
         return now[c->from].memory;
-    demi_kept_recall(w, now, c);
+    demi_persistent_recall(w, now, c);
     if (c->from < 0) return c->memory;
     for (k = 0; k < w->laws.memory; k++) {
         if (!(w->laws.vectors >> k & 1) && k != w->laws.at_twisting) continue;
@@ -25303,7 +25342,7 @@ static const dem_real *demi_kept_past(const dem_world *w, const demi_kept *now, 
 }
 /* Sum of the two radii, m: of spheres, including those of clusters, or the bounding radii of other
    shapes; a wall adds none. */
-static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
+static dem_real demi_persistent_radii(const dem_world *w, const demi_persistent *k) {
     return demi_part_now(w, k->a, k->part_a).radius +
         (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
 }
@@ -25311,8 +25350,8 @@ DEM_INLINE dem_vec3 demi_middle(dem_vec3 a, dem_vec3 b) {
     return demi_scale(demi_add(a, b), DEM_R(0.5));
 }
 /* Fills row q of a contact with a wall, on its wall's side. */
-DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_vec3 mid,
-                                     demi_points *t, int q) {
+DEM_INLINE void demi_persistent_fetch_wall(const demi_run *r, const demi_persistent *k,
+                                           dem_vec3 mid, demi_points *t, int q) {
     const dem_world *w = r->w;
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
@@ -25336,8 +25375,8 @@ DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_
     demi_rows_put(&t->spun[1], q, wall->mid.spin);
 }
 /* Fills row q of a contact of two bodies, on the side of body b. */
-DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, const demi_kept *old,
-                                     demi_points *t, int q) {
+DEM_INLINE void demi_persistent_fetch_pair(const demi_run *r, const demi_persistent *k,
+                                           const demi_persistent *old, demi_points *t, int q) {
     const dem_world *w = r->w;
     const dem_real *u = w->bodies.vel, *uh = w->bodies.half_vel;
     demi_rows_minus(&t->rows.rate, (size_t)q, u + 4*k->a, u + 4*k->b);
@@ -25353,7 +25392,7 @@ DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, cons
                                                      demi_rows_at(&t->mid[1], q)));
 }
 /* Fills row q with the coefficients of its contact, unless it has them already. */
-DEM_INLINE void demi_kept_fetch_coefs(demi_points *t, int q, const demi_coefs_row *row) {
+DEM_INLINE void demi_persistent_fetch_coefs(demi_points *t, int q, const demi_coefs_row *row) {
     int e;
     t->rows.coef[DEMI_M_EFF][q] = t->known[q] = row->m_eff;
     t->turns |= !(row->m_eff > 0);
@@ -25364,9 +25403,9 @@ DEM_INLINE void demi_kept_fetch_coefs(demi_points *t, int q, const demi_coefs_ro
     t->filled[q] = row;
 }
 /* Fills row q with what the effective mass of its contact depends on. */
-DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, const demi_kept *k, demi_points *t,
-                                     int q) {
-    const dem_vec3 felt = demi_kept_felt(k);
+DEM_INLINE void demi_persistent_fetch_felt(const dem_world *w, const demi_persistent *k,
+                                           demi_points *t, int q) {
+    const dem_vec3 felt = demi_persistent_felt(k);
     const dem_real *a = w->bodies.yield + 6*k->a, *b = w->bodies.yield + 6*DEMI_MAX(k->b, 0);
     const dem_real both = k->b < 0 ? DEM_R(0) : DEM_R(1);
     int e;
@@ -25381,8 +25420,8 @@ DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, const demi_kept *k, dem
 }
 /* Appends contact c, which continues `old` with the history `past` and has the coefficients `row`,
    to a tile. */
-static void demi_kept_add(demi_points *t, demi_kept *c, const demi_kept *old,
-                          const dem_real *past, const demi_coefs_row *row) {
+static void demi_persistent_add(demi_points *t, demi_persistent *c, const demi_persistent *old,
+                                const dem_real *past, const demi_coefs_row *row) {
     const demi_run *r = &t->run;
     const dem_world *w = r->w;
     const dem_vec3 mid = demi_middle(c->arm_a, old->arm_a);
@@ -25403,13 +25442,13 @@ static void demi_kept_add(demi_points *t, demi_kept *c, const demi_kept *old,
         demi_rows_put(&t->mid[0], q, mid);
         demi_rows_put(&t->spun[0], q, demi_at(w->bodies.half_spin + 4*c->a));
     }
-    if (c->b < 0) demi_kept_fetch_wall(r, c, mid, t, q);
-    else demi_kept_fetch_pair(r, c, old, t, q);
-    demi_kept_fetch_coefs(t, q, row);
+    if (c->b < 0) demi_persistent_fetch_wall(r, c, mid, t, q);
+    else demi_persistent_fetch_pair(r, c, old, t, q);
+    demi_persistent_fetch_coefs(t, q, row);
     demi_points_weights(w, t, q, c);
     t->couple[q] = c->odd ? c->more.couple : 0;
     demi_rows_put(&t->outset, q, c->odd ? c->more.outset : demi_v(0, 0, 0));
-    if (w->bodies.shaped) demi_kept_fetch_felt(w, c, t, q);
+    if (w->bodies.shaped) demi_persistent_fetch_felt(w, c, t, q);
     if (!w->desc.law) return;
     t->rows.radius[0][q] = demi_part_now(w, c->a, c->part_a).radius;
     t->rows.radius[1][q] = c->b < 0 ? 0 : demi_part_now(w, c->b, c->part_b).radius;
@@ -25417,7 +25456,7 @@ static void demi_kept_add(demi_points *t, demi_kept *c, const demi_kept *old,
 /* Pads the last vector group of a tile with copies of its last contact, in every row that was
    filled, unless an earlier contact has left something. The padded results are ignored; copies
    avoid arithmetic on undefined values. */
-static void demi_kept_fill_up(demi_points *t, int full) {
+static void demi_persistent_fill_up(demi_points *t, int full) {
     const int last = t->count - 1, shaped = t->run.w->bodies.shaped;
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
         t->rows.memory[0], t->rows.coef[0], t->base[0], t->slope, t->share, t->grip, t->lift,
@@ -25450,24 +25489,24 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.moment + 4*body);
 }
 /* Prepares an empty tile for up to `count` contacts: see demi_points_begin. */
-static void demi_kept_tile_begin(const dem_world *w, demi_points *t, dem_real dt, int count) {
+static void demi_persistent_tile_begin(const dem_world *w, demi_points *t, dem_real dt, int count) {
     demi_points_begin(w, t, dt, count + DEMI_LANES);
     if (w->desc.law) t->run.stage[1] = demi_stage_own;      /* rows of contacts know no wall */
     t->hop = 1;
 }
 /* Evaluates the contacts of a tile. */
-static void demi_kept_evaluate(const dem_world *w, demi_points *t) {
-    demi_kept_fill_up(t, (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES);
+static void demi_persistent_evaluate(const dem_world *w, demi_points *t) {
+    demi_persistent_fill_up(t, (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES);
     demi_points_evaluate(w, t);
 }
 /* Evaluates a tile and adds its results. */
-static void demi_kept_tile_respond(dem_world *w, int d, demi_points *t) {
-    demi_kept_evaluate(w, t);
+static void demi_persistent_tile_respond(dem_world *w, int d, demi_points *t) {
+    demi_persistent_evaluate(w, t);
     demi_points_finish(w, d, t);
 }
 /* Counts a contact that a law is evaluated for: materials that have touched, largest overlap,
    numbers of contacts. fresh: it begins to touch in this step. */
-static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) {
+static void demi_persistent_count(dem_world *w, int d, const demi_persistent *c, int fresh) {
     demi_domain *domain = &w->domains[d];
     const int touches = c->overlap > 0;
     if (touches && fresh) {
@@ -25482,41 +25521,41 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
     }
     w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall].contacts +=
         touches && !c->corner;
-    domain->kept_walls += touches;
+    domain->persistent_walls += touches;
 }
 /* Evaluates all persistent contacts of a work group in list order. */
-static void demi_kept_respond(dem_world *w, int d) {
+static void demi_persistent_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
-    const demi_kept *now = demi_kept_of(w, d);
+    const demi_persistent *now = demi_persistent_of(w, d);
     DEMI_ALIGNED demi_points tile;
     int i, known;
-    domain->kept_walls = 0;
-    if (!domain->kept_next) return;
-    known = demi_kept_rows_begin(w, d, domain->kept_next);
-    demi_kept_tile_begin(w, &tile, dt, domain->kept_next);
-    for (i = 0; i < domain->kept_next; i++) {
-        demi_kept *c = w->kept_next + w->kept_first[d] + i;
-        const demi_kept *old = c->from < 0 ? c : now + c->from;
-        if (i + 5 < domain->kept_next) demi_kept_ahead(c, 5, 1);
-        if (i + 2 < domain->kept_next) {
+    domain->persistent_walls = 0;
+    if (!domain->persistent_next) return;
+    known = demi_persistent_rows_begin(w, d, domain->persistent_next);
+    demi_persistent_tile_begin(w, &tile, dt, domain->persistent_next);
+    for (i = 0; i < domain->persistent_next; i++) {
+        demi_persistent *c = w->persistent_next + w->persistent_first[d] + i;
+        const demi_persistent *old = c->from < 0 ? c : now + c->from;
+        if (i + 5 < domain->persistent_next) demi_persistent_ahead(c, 5, 1);
+        if (i + 2 < domain->persistent_next) {
             demi_body_fetch(w, c[2].a);
             if (c[2].b >= 0) demi_body_fetch(w, c[2].b);
-            if (c[2].from >= 0) demi_kept_ahead(now, (size_t)c[2].from, 0);
+            if (c[2].from >= 0) demi_persistent_ahead(now, (size_t)c[2].from, 0);
         }
-        if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */
-            demi_kept_recall(w, now, c);
+        if (!demi_persistent_asked(w, c)) {     /* on its way through a reduced hole */
+            demi_persistent_recall(w, now, c);
             c->row = -1;
             c->force = demi_v(0, 0, 0);
-            domain->kept_walls += c->b < 0;
+            domain->persistent_walls += c->b < 0;
             continue;
         }
-        demi_kept_add(&tile, c, old, demi_kept_past(w, now, c),
-                      demi_kept_row(w, d, c, old, known && old != c));
-        demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
-        if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &tile);
+        demi_persistent_add(&tile, c, old, demi_persistent_past(w, now, c),
+                            demi_persistent_row(w, d, c, old, known && old != c));
+        demi_persistent_count(w, d, c, c->from < 0 || !(old->overlap > 0));
+        if (tile.count == DEMI_TILE) demi_persistent_tile_respond(w, d, &tile);
     }
-    if (tile.count) demi_kept_tile_respond(w, d, &tile);
+    if (tile.count) demi_persistent_tile_respond(w, d, &tile);
 }
 /* Clears the slot of a candidate with a later work group: its contacts add to it. */
 static void demi_slot_clear(dem_world *w, int k) {
@@ -25525,7 +25564,7 @@ static void demi_slot_clear(dem_world *w, int k) {
     if (rates) memset(w->cross_rate + rates*(size_t)k, 0, rates*sizeof(dem_real));
 }
 /* Clears the slots of all pairs of bodies that may have persistent contacts. */
-static void demi_kept_clear(dem_world *w, int d) {
+static void demi_persistent_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     int p;
     for (p = domain->near_shaped_cross; p < domain->near_shaped_end; p++)
@@ -25556,8 +25595,9 @@ static void demi_cross_gather(dem_world *w, int d) {
    pruned neighbour list then holds pairs of member spheres. A lone sphere is the only member of its
    body; pairs of two lone spheres come first in the list, and >>pairs computes them. Of the other
    pairs, a step finds those that touch. These fill tiles of >>points; their histories are in the
-   list. Contacts of the same two bodies may be merged (>>kept). Writes the forces and histories of
-   its pairs, their slots, near.on and near.hit (which >>near also uses while it builds a list).
+   list. Contacts of the same two bodies may be merged (>>persistent). Writes the forces and
+   histories of its pairs, their slots, near.on and near.hit (which >>near also uses while it builds
+   a list).
    --------------------------------------------------------------------------------------------- */
 
 /* Work of one group: a tile of contacts, which is evaluated when it is full. */
@@ -25580,14 +25620,14 @@ static void demi_members_clear(demi_member_tile *m) {
 /* Appends entry p of the pruned list to a tile. c: its weights if it is merged with others of the
    same two bodies, or null. */
 DEM_INLINE void demi_members_add(const dem_world *w, demi_member_tile *m, int p,
-                                 const demi_kept *c) {
+                                 const demi_persistent *c) {
     const int q = m->t.count++;
     m->p[q] = p;
     if (!c) return;
     demi_points_weights(w, &m->t, q, c);
     m->t.weighted = m->merged[q] = 1;
-    m->felt[0][q] = demi_sub(c->arm_a, demi_kept_felt(c));
-    m->felt[1][q] = demi_sub(c->arm_b, demi_kept_felt(c));
+    m->felt[0][q] = demi_sub(c->arm_a, demi_persistent_felt(c));
+    m->felt[1][q] = demi_sub(c->arm_b, demi_persistent_felt(c));
 }
 /* Fills the rows of a tile from its entries and the bodies. Arms lead to the centres of the
    spheres. send: 1 if forces on the bodies b go to slots. */
@@ -25633,7 +25673,7 @@ DEM_INLINE void demi_members_fetch(const dem_world *w, demi_member_tile *DEMI_RE
     }
 }
 /* Copies the histories of a tile's entries. If the weight of friction grows, a spring keeps its
-   force, as in demi_kept_past. */
+   force, as in demi_persistent_past. */
 static void demi_members_recall(const dem_world *w, demi_member_tile *DEMI_RESTRICT m, int d,
                                 int full) {
     const int at_grip = w->laws.at_grip, keep = w->memory_stride;
@@ -25779,15 +25819,16 @@ static void demi_members_respond(dem_world *w, demi_member_tile *m, int d, int s
 }
 /* Computes the weights of n contacts of work group d, of pairs of spheres of the same two bodies,
    into w->merging. hit: their entries. Returns them. */
-static const demi_kept *demi_members_merge(const dem_world *w, int d, const int32_t *hit, int n) {
-    demi_kept *const first = w->merging + (size_t)d*(size_t)w->merging_most;
+static const demi_persistent *demi_members_merge(const dem_world *w, int d, const int32_t *hit,
+                                                 int n) {
+    demi_persistent *const first = w->merging + (size_t)d*(size_t)w->merging_most;
     int i;
     for (i = 0; i < n; i++) {
         const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)hit[i];
         const dem_real *x = w->bodies.centre + 4*w->near.ball_a[at];
         const dem_real *y = w->bodies.centre + 4*w->near.ball_b[at];
-        demi_kept *c = first + i;
-        demi_kept_blank(c);
+        demi_persistent *c = first + i;
+        demi_persistent_blank(c);
         c->a = w->near.a[at];
         c->b = w->near.b[at];
         c->part_a = w->near.ball_a[at] - w->bodies.centre_start[c->a];
@@ -25795,7 +25836,7 @@ static const demi_kept *demi_members_merge(const dem_world *w, int d, const int3
         c->share = c->slope = 1;
         demi_balls_meet(w, demi_at(x), x[3], demi_at(y), y[3], demi_near_way(w, at), c);
     }
-    demi_kept_share(w, first, n);
+    demi_persistent_share(w, first, n);
     return first;
 }
 /* Finds which of entries p .. end - 1 touch or are within the range of the law, and clears the
@@ -25846,7 +25887,7 @@ static void demi_members_pairs(dem_world *w, int d) {
             if (p == begin || k[p] != k[p - 1]) demi_slot_clear(w, k[p]);
         n = demi_members_touch(w, d, begin, end, hit);
         for (p = 0; p < n; p += run) {
-            const demi_kept *c = 0;
+            const demi_persistent *c = 0;
             for (run = 1; merges && p + run < n && k[hit[p + run]] == k[hit[p]];) run++;
             if (run > 1) c = demi_members_merge(w, d, hit + p, run);
             for (i = 0; i < run; i++) {
@@ -25872,7 +25913,7 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
     const int cross = p >= domain->near_cross;  /* near_cross may be 0 */
     const int from = cross ? domain->near_cross : 0;
     const int end = cross ? domain->near_end : domain->near_own;
-    const demi_kept *c = 0;
+    const demi_persistent *c = 0;
     DEMI_ALIGNED demi_member_tile m;
     int i, n = 0, at = 0;
     if (!demi_member_touches(w, base + (size_t)p)) return 0;
@@ -26156,11 +26197,11 @@ static int demi_joined(const dem_world *w, int a, int b, int wall) {
    walls. Clears the contact history of pairs that are none. */
 static void demi_impulses_meet(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_kept *now = demi_kept_of(w, d);
+    const demi_persistent *now = demi_persistent_of(w, d);
     const size_t stride = (size_t)w->near.stride;
     demi_solver *s = &w->solver;
     demi_meeting *m = s->meetings + s->meeting_first[d];
-    const demi_kept *last = 0;
+    const demi_persistent *last = 0;
     int p, e, i, run = 0;
     domain->faced = domain->seated = 0;
     for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
@@ -26182,15 +26223,15 @@ static void demi_impulses_meet(dem_world *w, int d) {
         if (!(l2 > 0) && s->movers[a].inv + s->movers[b].inv > 0 && !demi_joined(w, a, b, -1))
             domain->overlap = 2;                /* at the same position: there is no normal */
     }
-    for (i = 0; i < domain->kept_next; i++) {
-        demi_kept *k = w->kept_next + w->kept_first[d] + i;
-        demi_kept_recall(w, now, k);
+    for (i = 0; i < domain->persistent_next; i++) {
+        demi_persistent *k = w->persistent_next + w->persistent_first[d] + i;
+        demi_persistent_recall(w, now, k);
         k->force = demi_v(0, 0, 0);
-        if (demi_kept_asked(w, k) && !demi_joined(w, k->a, k->b, k->wall) &&
+        if (demi_persistent_asked(w, k) && !demi_joined(w, k->a, k->b, k->wall) &&
             s->movers[k->a].inv + (k->b >= 0 ? s->movers[k->b].inv : 0) > 0) {
             m->a = k->a;
-            m->b = k->b >= 0 ? k->b : w->bodies.count + w->kept_first[d] + i;
-            m->same = last && last->a == k->a && last->b == k->b && demi_kept_one(w, last, k);
+            m->b = k->b >= 0 ? k->b : w->bodies.count + w->persistent_first[d] + i;
+            m->same = last && last->a == k->a && last->b == k->b && demi_persistent_one(w, last, k);
             m++->home = ~i;
             last = k;
             run = m[-1].same ? run + 1 : 1;
@@ -26283,8 +26324,8 @@ typedef struct demi_spot {
 /* Returns what is to be added to the gap of two bodies, m, if one was just set and is not half a
    step ahead: the gap is that at its time. The way between the centres is (demi_near_level), but
    the other body has turned. At walls contacts are those of that time, see `late`. */
-static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
-                                  const demi_spot *o) {
+static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m,
+                                  const demi_persistent *k, const demi_spot *o) {
     const int late = k && k->b < 0 ? 0 : demi_pair_late(w, m->a, m->b);
     const int body = late > 0 ? m->a : m->b;
     if (!late) return 0;
@@ -26293,7 +26334,8 @@ static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, con
 }
 /* Returns the geometry and the history of a constraint of domain d. */
 static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meeting *m) {
-    const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
+    const demi_persistent *k = m->home < 0 ? w->persistent_next + w->persistent_first[d] + ~m->home
+        : 0;
     demi_spot o;
     if (!k) {
         const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)m->home;
@@ -26325,7 +26367,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
     return o;
 }
 /* Sets the solver body of a wall contact to the velocity of the wall's surface there. */
-static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover *m) {
+static void demi_surface_lay(const dem_world *w, const demi_persistent *k, demi_mover *m) {
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
     dem_vec3 v = demi_surface_at(&wall->ahead, demi_add(x, k->arm_a));
@@ -26342,7 +26384,8 @@ static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover 
    bodies still have), minus the change of the wall's own velocity. The correction never exceeds the
    closing velocity, so it adds no energy. *hits receives the rest of the closing velocity, m/s,
    which is an impact. */
-static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, const demi_kept *k,
+static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m,
+                                   const demi_persistent *k,
                                    const demi_spot *o, dem_real closing, dem_real *hits) {
     const dem_real *y = o->memory;
     dem_real turned = closing - y[8*o->stride];
@@ -26387,7 +26430,8 @@ static void demi_impulses_lay(dem_world *w, int d) {
     int i;
     for (i = 0; i < s->meeting_count[d]; i++) {
         const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
-        const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
+        const demi_persistent *k = m->home < 0
+            ? w->persistent_next + w->persistent_first[d] + ~m->home : 0;
         const demi_spot o = demi_meeting_place(w, d, m);
         const dem_pair *pair = &w->pairs[(w->bodies.material[m->a] - 1)*DEMI_MATERIALS +
                                          o.material].given;
@@ -26817,7 +26861,7 @@ static int demi_joints_room(dem_world *w) {
                              d->b.slot ? demi_body_find(w, d->b) : -1};
         memset(r, 0, sizeof *r);
         r->a = body[0];
-        r->b = body[1] >= 0 ? body[1] : w->bodies.count + w->kept_first[DEMI_DOMAINS] + i;
+        r->b = body[1] >= 0 ? body[1] : w->bodies.count + w->persistent_first[DEMI_DOMAINS] + i;
         for (e = 0; e < 2; e++) {
             r->ends[e] = -1;
             if (body[e] < 0) continue;
@@ -28317,7 +28361,7 @@ static void demi_gradient_brought(dem_world *w, int index) {
 /* Computes the product of N and BY, into BROUGHT. Returns the sums of demi_gradient_brought. */
 static demi_run_sums demi_gradient_product(dem_world *w) {
     demi_solver *s = &w->solver;
-    const int movers = w->bodies.count + w->kept_first[DEMI_DOMAINS];
+    const int movers = w->bodies.count + w->persistent_first[DEMI_DOMAINS];
     int i, k;
     for (i = 0; i < movers; i++)
         for (k = 0; k < 3; k++) s->movers[i].v[k] = s->movers[i].w[k] = 0;
@@ -28438,7 +28482,7 @@ enum { DEMI_SAXCE = 25 };                       /* steps between two calls of de
 static demi_solved demi_solve_gradient(dem_world *w, int most,
                                        demi_run_sums (*step)(dem_world *w, double *a, double *b)) {
     demi_solver *s = &w->solver;
-    const size_t movers = (size_t)(w->bodies.count + w->kept_first[DEMI_DOMAINS]);
+    const size_t movers = (size_t)(w->bodies.count + w->persistent_first[DEMI_DOMAINS]);
     const int coulomb = w->desc.cone == DEM_CONE_COULOMB;
     demi_solved o = {0, 0, 0, 0};
     double a = 1, b = 1;
@@ -28523,14 +28567,14 @@ static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
     const size_t bodies = (size_t)w->bodies.count;
-    size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
+    size_t movers = bodies + (size_t)w->persistent_first[DEMI_DOMAINS], n = 0;
     int d;
     if (!demi_joints_room(w)) return 0;
     movers += (size_t)w->joint_count;
     s->mover_count = (int)movers;
     for (d = 0; d < w->domain_count; d++) {
         s->meeting_first[d] = (int)n;
-        n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
+        n += (size_t)(w->domains[d].near_end + w->domains[d].persistent_next);
     }
     s->twisted = demi_impulses_twist(w);
     return DEMI_GROW(w, s->meetings, n) && DEMI_GROW(w, s->contacts, n) &&
@@ -28618,7 +28662,7 @@ static void demi_movers_force(dem_world *w, int d) {
 /* Notes a solved contact for events. old: it had an impulse before; energy: J, lost by its normal
    impulse, slip and rolling. */
 static DEMI_APART void demi_impulse_note(dem_world *w, int d, const demi_meeting *m,
-                                         const demi_spot *o, const demi_kept *k, int old,
+                                         const demi_spot *o, const demi_persistent *k, int old,
                                          dem_real force, const double *energy) {
     const int wall = k && k->b < 0;
     double all[DEMI_E_ROLL + 1] = {0};
@@ -28643,12 +28687,13 @@ static void demi_impulses_tell(dem_world *w, int d) {
                                      w->booked.speed_max);
     double *lost = domain->energy;              /* J, of the coming step */
     int i, e, counted = 0;
-    domain->contacts = domain->kept_walls = 0;
+    domain->contacts = domain->persistent_walls = 0;
     for (i = 0; i < s->meeting_count[d]; i++) {
         const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
         const demi_impulse *c = s->contacts + m->at;
         const demi_spot o = demi_meeting_place(w, d, m);
-        demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
+        demi_persistent *k = m->home < 0 ? w->persistent_next + w->persistent_first[d] + ~m->home
+            : 0;
         dem_real *memory = k ? k->memory : w->near.memory +
             (size_t)d*DEMI_IMPULSE_REALS*o.stride + m->home;
         const dem_real push = c->push - s->beside[m->at].pull;
@@ -28695,7 +28740,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
             demi_wall_sum_add(w, sum, k->wall, at, demi_scale(p, -per), demi_scale(moment, -per),
                               demi_at(s->movers[m->b].v));
             sum->contacts += counts;
-            domain->kept_walls += counts;
+            domain->persistent_walls += counts;
         } else domain->contacts += counts;
     }
 }
@@ -31005,9 +31050,9 @@ static dem_result demi_rails_whole(dem_world *w, const char *call) {
    the tile. */
 static void demi_steer_tile(dem_world *w, demi_points *t, dem_real sign) {
     int q;
-    demi_kept_evaluate(w, t);
+    demi_persistent_evaluate(w, t);
     for (q = 0; q < t->count; q++) {
-        demi_kept *c = t->contact[q];
+        demi_persistent *c = t->contact[q];
         dem_vec3 force, torque;
         c->force = demi_point_own(t, q, &torque);
         force = demi_row(t->rows.force, q);
@@ -31023,14 +31068,14 @@ static void demi_steer_tile(dem_world *w, demi_points *t, dem_real sign) {
 static void demi_steer(dem_world *w, int wall, dem_real sign) {
     DEMI_ALIGNED demi_points tile;
     int d, k, known;
-    demi_kept_tile_begin(w, &tile, 0, DEMI_TILE);
+    demi_persistent_tile_begin(w, &tile, 0, DEMI_TILE);
     for (d = 0; d < w->domain_count; d++) {
-        known = demi_kept_rows_begin(w, d, w->domains[d].kept);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
-            if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
+        known = demi_persistent_rows_begin(w, d, w->domains[d].persistent);
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent *c = demi_persistent_of(w, d) + k;
+            if (c->b >= 0 || c->wall != wall || !demi_persistent_asked(w, c)) continue;
             if (w->bodies.shaped) demi_yields_turn(w, c->a, c->a + 1);
-            demi_kept_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
+            demi_persistent_add(&tile, c, c, c->memory, demi_persistent_row(w, d, c, c, known));
             if (tile.count == DEMI_TILE) demi_steer_tile(w, &tile, sign);
         }
         if (tile.count) demi_steer_tile(w, &tile, sign);
@@ -31205,7 +31250,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
     out[DEMI_SERVO_FORCE] = demi_servo_force(first, w, of);
     out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
     for (d = 0; d < w->domain_count; d++) {
-        const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
+        const demi_persistent *c = demi_persistent_of(w, d), *end = c + w->domains[d].persistent;
         for (; c < end && w->domains[d].walls; c++) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
@@ -31214,7 +31259,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
             if (c->b >= 0 || demi_is_ghost(w, c->a) ||
                 !demi_walls_alike(&walls[c->wall], &walls[of]) ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
-            demi_kept_coefs(w, c, coef, root);
+            demi_persistent_coefs(w, c, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
             s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
             if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
@@ -31824,10 +31869,10 @@ static void demi_press_rates(const dem_world *w, demi_press *press) {
             c.r_eff = ra*rb/sum;
             if (c.overlap > -c.range) demi_press_relax(w, span.a[0], span.b[0], -1, &c, 1, press);
         }
-        for (p = 0; p < domain->kept; p++) {
-            const demi_kept *k = demi_kept_of(w, d) + p;
+        for (p = 0; p < domain->persistent; p++) {
+            const demi_persistent *k = demi_persistent_of(w, d) + p;
             memset(&c, 0, sizeof c);
-            c.range = w->margin.reach > 0 ? demi_range(w, demi_kept_radii(w, k)) : 0;
+            c.range = w->margin.reach > 0 ? demi_range(w, demi_persistent_radii(w, k)) : 0;
             c.overlap = k->overlap;
             c.normal = k->normal;
             c.r_eff = k->r_eff;
@@ -31872,15 +31917,15 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
                     demi_press_add_whole(w, i, &c, f, arm, whole + press[i].whole - 1);
             }
         }
-        for (p = 0; p < domain->kept; p++) {
-            const demi_kept *k = demi_kept_of(w, d) + p;
+        for (p = 0; p < domain->persistent; p++) {
+            const demi_persistent *k = demi_persistent_of(w, d) + p;
             const int i = k->a;
             const double arm = (double)demi_radius(w, i);
             dem_real coef[DEMI_COEFS], root[2];
             demi_pressed c;
             if (!(k->overlap > 0) || k->b >= 0 || demi_shape_of(w, i) ||
                 (whole && !press[i].whole)) continue;
-            demi_kept_coefs(w, k, coef, root);
+            demi_persistent_coefs(w, k, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[i]);
             coef[DEMI_CT] += root[1]*DEMI_SQRT(w->bodies.mass[i]);
             c.s = demi_stiffness_of(w, coef, (double)w->bodies.mass[i], (double)k->overlap);
@@ -32437,8 +32482,8 @@ static void demi_due_book(dem_world *w) {
 static void demi_springs(dem_world *w, int d) {
     demi_pairs(w, d);
     if (w->effects.clustered) demi_members_pairs(w, d);
-    demi_kept_clear(w, d);
-    demi_kept_respond(w, d);
+    demi_persistent_clear(w, d);
+    demi_persistent_respond(w, d);
 }
 /* Springs: `info` of demi_response_row. Computes the force of one pair of the pruned neighbour list
    again, by the laws of the run and on a copy of its contact history, so that nothing changes. */
@@ -32516,17 +32561,17 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
    surface of the wall, whereas the arm leads to that of a, which overlaps. The arm of polyhedra
    leads to the wall if they press on it, otherwise half way across the gap. At both points the
    normal force has the same moment; that of impulses acts at the arm. */
-static dem_vec3 demi_wall_branch(const dem_world *w, const demi_kept *c) {
+static dem_vec3 demi_wall_branch(const dem_world *w, const demi_persistent *c) {
     const int pressing = demi_response_is(w, DEMI_PRESSING);
     const dem_vec3 out = pressing && c->odd ? c->more.outset : demi_v(0, 0, 0);
     dem_real past = c->overlap/c->slope - demi_dot(out, c->normal);
     if (c->corners) past = pressing && c->overlap > 0 ? 0 : c->overlap/2;
     return demi_sub(demi_sub(c->arm_a, out), demi_scale(c->normal, past));
 }
-/* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
-   users see. branch: m, from the centre of a to the contact point. */
-static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_vec3 branch,
-                           dem_contact_info *out) {
+/* Writes a persistent contact (demi_persistent: any contact other than sphere on sphere) in the
+   form that users see. branch: m, from the centre of a to the contact point. */
+static void demi_persistent_info(const dem_world *w, const demi_persistent *c, dem_vec3 branch,
+                                 dem_contact_info *out) {
     const demi_periods p = demi_periods_of(w);
     out->a = dem_body_id_get(w, c->a);
     out->b = dem_body_id_get(w, c->b);
@@ -32541,12 +32586,12 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_vec3 bran
 typedef struct demi_walk {
     int blind;                     /* set it to 1 only to count: then `info` and `branch` are not
                                       written */
-    int d, at, kept;               /* work group; next entry of the pruned or, with kept, of the
+    int d, at, persistent; /* work group; next entry of the pruned or, with `persistent`, of the
                                       persistent list */
     int counted;                   /* a point of the present pair of polyhedra has counted */
     /* the contact: indices of the bodies (b -1: a wall); entry of the pruned list, or persistent */
     int a, b, entry;
-    demi_kept *own;
+    demi_persistent *own;
     /* 1: it counts as one contact: the bodies touch or, with impulses, push; of the points at which
        a polyhedron touches, one counts */
     int counts;
@@ -32565,16 +32610,16 @@ static int demi_walk_look(const dem_world *w, demi_walk *c, int at) {
     const size_t stride = (size_t)w->near.stride, entry = (size_t)c->d*stride + (size_t)at;
     const int solved = demi_response_is(w, DEMI_MIDWAY);
     c->entry = at;
-    c->own = c->kept ? demi_kept_of(w, c->d) + at : 0;
+    c->own = c->persistent ? demi_persistent_of(w, c->d) + at : 0;
     c->a = c->own ? c->own->a : w->near.a[entry];
     c->b = c->own ? c->own->b : w->near.b[entry];
-    if (c->own ? !demi_kept_asked(w, c->own)
+    if (c->own ? !demi_persistent_asked(w, c->own)
         : !demi_contact_force(w, c->d, at, c->blind ? 0 : &c->info, &c->branch)) return 0;
     if (w->joint_count && demi_parted(w, c->a, c->b, c->own ? c->own->wall : -1)) return 0;
     if (c->blind) return 1;
     if (c->own) {
         c->branch = c->b < 0 ? demi_wall_branch(w, c->own) : c->own->arm_a;
-        demi_kept_info(w, c->own, c->branch, &c->info);
+        demi_persistent_info(w, c->own, c->branch, &c->info);
         if (c->b >= 0) c->branch = demi_sub(c->branch, c->own->arm_b);
     }
     if (!c->info.further) c->counted = 0;
@@ -32585,16 +32630,16 @@ static int demi_walk_look(const dem_world *w, demi_walk *c, int at) {
 }
 /* Goes to the next contact. Returns 0 if there is none. */
 static int demi_walk_next(const dem_world *w, demi_walk *c) {
-    for (; c->d < w->domain_count; c->d++, c->kept = 0, c->at = -1) {
+    for (; c->d < w->domain_count; c->d++, c->persistent = 0, c->at = -1) {
         const demi_domain *domain = &w->domains[c->d];
         if (c->at < 0) c->at = demi_near_first(domain);
-        for (; !c->kept; c->kept = 1, c->at = 0)
+        for (; !c->persistent; c->persistent = 1, c->at = 0)
             while (c->at < domain->near_end) {
                 const int at = c->at;
                 c->at = demi_near_next(domain, at);
                 if (demi_walk_look(w, c, at)) return 1;
             }
-        while (c->at < domain->kept) if (demi_walk_look(w, c, c->at++)) return 1;
+        while (c->at < domain->persistent) if (demi_walk_look(w, c, c->at++)) return 1;
     }
     return 0;
 }
@@ -32607,7 +32652,7 @@ static double demi_deepest(const dem_world *w, int *a, int *b, int *wall) {
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
-        const demi_kept *kept = demi_kept_of(w, d);
+        const demi_persistent *own = demi_persistent_of(w, d);
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
             const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)k;
             const dem_real p = demi_near_radius(w, at, 0), q = demi_near_radius(w, at, 1);
@@ -32619,13 +32664,13 @@ static double demi_deepest(const dem_world *w, int *a, int *b, int *wall) {
             *a = w->near.a[at];
             *b = w->near.b[at];
         }
-        for (k = 0; k < domain->kept; k++) {
-            if (!((double)kept[k].deep > most) || (w->joint_count && demi_parted(w, kept[k].a,
-                kept[k].b, kept[k].wall))) continue;
-            most = (double)kept[k].deep;
-            *a = kept[k].a;
-            *b = kept[k].b;
-            *wall = kept[k].wall;
+        for (k = 0; k < domain->persistent; k++) {
+            if (!((double)own[k].deep > most) || (w->joint_count && demi_parted(w, own[k].a,
+                own[k].b, own[k].wall))) continue;
+            most = (double)own[k].deep;
+            *a = own[k].a;
+            *b = own[k].b;
+            *wall = own[k].wall;
         }
     }
     return most;
@@ -34461,7 +34506,7 @@ static void demi_walls_bear(dem_world *w) {
 static int demi_forces(dem_world *w) {
     const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
     const demi_response_row *response = &demi_responses[w->desc.response];
-    demi_kept *kept = w->kept_now;
+    demi_persistent *last = w->persistent_now;
     int d, i, k;
     if ((response->room && !response->room(w)) || (w->events.n.on && !demi_notes_room(w))) return 0;
     for (d = 0; d < w->domain_count; d++) {
@@ -34472,9 +34517,9 @@ static int demi_forces(dem_world *w) {
     demi_domains_do(w, demi_domain_respond);
     if (response->solve) response->solve(w);
     demi_domains_do(w, demi_domain_gather);
-    w->kept_now = w->kept_next;
-    w->kept_next = kept;
-    for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
+    w->persistent_now = w->persistent_next;
+    w->persistent_next = last;
+    for (d = 0; d < w->domain_count; d++) w->domains[d].persistent = w->domains[d].persistent_next;
     if (w->threads.now > 1) demi_domains_weigh(w);
     for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
@@ -34856,9 +34901,9 @@ static dem_result demi_all_rebuild(dem_world *h) {
     return h->team ? h->team->rebuild(h) : demi_rebuild(h, "dem_world_step");
 }
 /* Computes all forces: 3 touch, 4 respond, 5 gather. near: 1 if pruned lists may be due. Lists of
-   contacts of spheres always have room (demi_kept_room). With other shapes the members first agree
-   that touch has succeeded in all of them, and only then compute forces, because a contact history
-   may advance only once per step. */
+   contacts of spheres always have room (demi_persistent_room). With other shapes the members first
+   agree that touch has succeeded in all of them, and only then compute forces, because a contact
+   history may advance only once per step. */
 static dem_result demi_all_forces(dem_world *h, int near) {
     dem_result result = h->team ? h->team->lend(h) : DEM_OK;
     if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);
@@ -35470,11 +35515,11 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
         if (!demi_contacts_known(w)) continue;
         c.contacts += w->domains[d].contacts;
-        c.wall_contacts += w->domains[d].kept_walls;
-        for (k = 0; k < w->domains[d].kept && pressing; k++) {
+        c.wall_contacts += w->domains[d].persistent_walls;
+        for (k = 0; k < w->domains[d].persistent && pressing; k++) {
             /* a polyhedron presses on a wall at up to four points: one contact */
-            const demi_kept *kept = demi_kept_of(w, d) + k;
-            c.wall_contacts -= kept->b < 0 && kept->overlap > 0 && kept->corner;
+            const demi_persistent *own = demi_persistent_of(w, d) + k;
+            c.wall_contacts -= own->b < 0 && own->overlap > 0 && own->corner;
         }
     }
     c.overlap_max = (dem_real)w->booked.overlap_max;
@@ -35631,7 +35676,7 @@ static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb, i
 }
 /* Returns the digest of one persistent contact, the same whichever of its bodies is a. While there
    is no neighbour list, such a contact names slots instead of indices. */
-static uint64_t demi_kept_hash(const dem_world *w, const demi_kept *c) {
+static uint64_t demi_persistent_hash(const dem_world *w, const demi_persistent *c) {
     const int pushes = c->share > 0, slots = !w->stage.list_valid;
     uint32_t who[4];
     uint64_t h = DEMI_HASH_START;
@@ -35662,8 +35707,8 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
                 sum += demi_pair_digest(w, w->bodies.slot[span.a[0]], w->bodies.slot[span.b[0]],
                                         demi_near_part_key(w, at), span.memory, span.stride);
         }
-        for (k = 0; k < domain->kept; k++)
-            sum += demi_kept_hash(w, demi_kept_of(w, d) + k);
+        for (k = 0; k < domain->persistent; k++)
+            sum += demi_persistent_hash(w, demi_persistent_of(w, d) + k);
     }
     for (i = 0; !w->stage.list_valid && w->filed.count && w->filed.stride == w->memory_stride &&
                 i < w->filed.rows; i++)
@@ -35681,7 +35726,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
    and the wall. */
 static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body, dem_vec3 *normal,
                            dem_real *mu) {
-    const demi_kept *c = demi_kept_of(w, d) + k;
+    const demi_persistent *c = demi_persistent_of(w, d) + k;
     *body = c->a;
     *normal = c->normal;
     *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
@@ -35707,7 +35752,7 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
     if (!demi_contacts_known(w)) return demi_list_stale(w, __func__);
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
-        const int all = w->domains[d].kept;
+        const int all = w->domains[d].persistent;
         int last = -1;                          /* the grain counted last: counted only once */
         for (k = 0; k < all; k++) {
             dem_vec3 v, flat;
@@ -39996,10 +40041,11 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
-        for (k = 0; k < domain->kept && !s->from; k++)
-            demi_kept_tidy(w, demi_kept_of(w, d) + k);
-        if (domain->kept)
-            demi_visit(s, demi_kept_of(w, d), (size_t)domain->kept*sizeof(demi_kept));
+        for (k = 0; k < domain->persistent && !s->from; k++)
+            demi_persistent_tidy(w, demi_persistent_of(w, d) + k);
+        if (domain->persistent)
+            demi_visit(s, demi_persistent_of(w, d),
+                       (size_t)domain->persistent*sizeof(demi_persistent));
     }
     if (w->stage.list_valid || !w->filed.count) return;
     demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
@@ -40039,7 +40085,7 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     int d;
     demi_visit_numbers(w, s);
     for (d = 0; d < w->domain_count; d++) {
-        w->domains[d].coefs = 0;                /* see demi_kept_tidy */
+        w->domains[d].coefs = 0;                /* see demi_persistent_tidy */
         w->domains[d].check = 0;                /* of the last step, which it has passed */
     }
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
@@ -40065,7 +40111,7 @@ typedef struct demi_checkpoint_head {
    the arrays of bodies. It differs for another dem.h, another memory layout of the compiler and
    another DEM_DOMAIN_BODIES. */
 static uint32_t demi_checkpoint_layout(void) {
-    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
+    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_persistent), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_strained),
                             sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written),
@@ -40454,14 +40500,14 @@ static int demi_domain_check(const demi_reader *r, int d) {
     const int64_t counts[] = {o->own, o->cross, o->walls, o->near_own,
         (int64_t)o->near_end - o->near_cross, (int64_t)o->near_shaped_cross - o->near_shaped,
         (int64_t)o->near_shaped_end - o->near_shaped_cross, o->contacts,
-        o->kept, o->kept_walls, o->near_cross, o->near_end, o->near_shaped,
+        o->persistent, o->persistent_walls, o->near_cross, o->near_end, o->near_shaped,
         o->near_shaped_cross, o->near_shaped_end};
     const int group = DEMI_LANES;
     size_t i;
     for (i = 0; i < sizeof counts/sizeof *counts; i++)
         if (counts[i] < 0 || counts[i] > INT_MAX/64) return 0;
-    if (!demi_left(r, o->kept, sizeof(demi_kept)) ||
-        (o->kept && !t->wall_count && !t->bodies.orienting)) return 0;
+    if (!demi_left(r, o->persistent, sizeof(demi_persistent)) ||
+        (o->persistent && !t->wall_count && !t->bodies.orienting)) return 0;
     if (!t->stage.list_valid) return 1;
     return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
            o->end <= t->bodies.count && (d + 1 < t->domain_count || o->end == t->bodies.count) &&
@@ -40623,8 +40669,8 @@ static int demi_contacts_check(const demi_reader *r) {
     const int who = t->stage.list_valid ? t->bodies.count : t->bodies.slot_count;
     int d, k;
     for (d = 0; d < t->domain_count; d++) {
-        for (k = 0; k < t->domains[d].kept; k++) {
-            const demi_kept *c = demi_kept_of(t, d) + k;
+        for (k = 0; k < t->domains[d].persistent; k++) {
+            const demi_persistent *c = demi_persistent_of(t, d) + k;
             if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || !demi_finite3(c->shift) ||
                 (c->b >= 0 && !t->bodies.orienting) ||
                     (c->b < 0 && (c->wall < 0 || c->wall >= t->wall_count ||
@@ -40717,7 +40763,7 @@ static int demi_twin_lists_room(dem_world *t) {
                               t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
                                   ? o->walls : 0, t->domain_count > 1};
         for (k = 0; k < 5; k++) most[k] = DEMI_MAX(most[k], counts[k]);
-        crowd[d] = o->kept;
+        crowd[d] = o->persistent;
     }
     if (t->stage.list_valid) {
         most[0] = DEMI_MAX(most[0], DEMI_MAX(64, each*3));
@@ -40727,11 +40773,11 @@ static int demi_twin_lists_room(dem_world *t) {
     }
     for (k = 0; k < 4; k++) if (k != 2) most[k] += t->join_room;
     most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
-    demi_kept_lay(t, t->stage.list_valid ? t->domain_count : 0, crowd, t->kept_first);
+    demi_persistent_lay(t, t->stage.list_valid ? t->domain_count : 0, crowd, t->persistent_first);
     if (!demi_wall_sums_room(t) ||
-        !DEMI_GROW(t, t->kept_now, (size_t)t->kept_first[DEMI_DOMAINS]) ||
-        !DEMI_GROW(t, t->kept_next, (size_t)t->kept_first[DEMI_DOMAINS]) ||
-        !DEMI_GROW(t, t->coefs, 2*(size_t)t->kept_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->persistent_now, (size_t)t->persistent_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->persistent_next, (size_t)t->persistent_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->coefs, 2*(size_t)t->persistent_first[DEMI_DOMAINS]) ||
         !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
     return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
@@ -41077,7 +41123,7 @@ static dem_result demi_changes_apply(dem_world *w, void *how) {
             demi_pair_put(w, i, j, &pair);
         }
     if (c->laws) demi_filed_forget(w);          /* they mean something else */
-    for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].kept = 0;
+    for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].persistent = 0;
     if (c->pairs) demi_surfaces_outdated(w);
     if (!w->desc.ledger) demi_events_clear(w);  /* without an account nothing is recorded */
     if (w->desc.ledger && !c->ledger) {            /* its account begins now */
@@ -41914,8 +41960,8 @@ static void demi_check_in_walls(dem_world *w, demi_findings *f) {
     int d, k, count = 0, body = 0, wall = 0;
     if (!demi_touch(w)) return;                 /* no memory: the run will report it */
     for (d = 0; d < w->domain_count; d++)
-        for (k = 0; k < w->domains[d].kept_next; k++) {
-            const demi_kept *c = w->kept_next + w->kept_first[d] + k;
+        for (k = 0; k < w->domains[d].persistent_next; k++) {
+            const demi_persistent *c = w->persistent_next + w->persistent_first[d] + k;
             if (c->b >= 0 || !((double)c->deep > 0.01)) continue;
             count++;
             if ((double)c->deep <= worst) continue;
@@ -41923,7 +41969,7 @@ static void demi_check_in_walls(dem_world *w, demi_findings *f) {
             body = (int)w->bodies.slot[c->a] + 1;
             wall = w->walls[c->wall].id;
         }
-    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = w->domains[d].kept;
+    for (d = 0; d < w->domain_count; d++) w->domains[d].persistent_next = w->domains[d].persistent;
     if (count)
         demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
                   : DEM_SEVERITY_NOTE, "grains overlap walls at %d place%s, body %d wall %d by "
@@ -43413,9 +43459,9 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
 }
 
 /* Returns the number of persistent contacts. */
-static int demi_kept_total(const dem_world *w) {
+static int demi_persistent_total(const dem_world *w) {
     int d, n = 0;
-    for (d = 0; d < w->domain_count; d++) n += w->domains[d].kept;
+    for (d = 0; d < w->domain_count; d++) n += w->domains[d].persistent;
     return n;
 }
 /* Returns in `text` how much contact history a law keeps, or "" if none. */
@@ -43512,7 +43558,8 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
                 w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
-                : "are separate", w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
+                : "are separate", w->bodies.count ? (double)demi_persistent_total(w)/w->bodies.count
+                   : 0);
     else if (w->bodies.orienting)
         demi_print(out, "           orientations of spheres are followed, because "
                    "desc.orientations is 1\n");
@@ -43885,9 +43932,9 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
             head.pairs++;
         }
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
-        for (k = 0; k < w->domains[d].kept && ok; k++) {
-            demi_kept c = demi_kept_of(w, d)[k];
-            demi_kept_tidy(w, &c);
+        for (k = 0; k < w->domains[d].persistent && ok; k++) {
+            demi_persistent c = demi_persistent_of(w, d)[k];
+            demi_persistent_tidy(w, &c);
             if (w->stage.list_valid) {
                 c.a = (int32_t)w->bodies.slot[c.a];
                 if (c.b >= 0) c.b = (int32_t)w->bodies.slot[c.b];
@@ -43906,27 +43953,27 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
 static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_head *come) {
     const int had = w->filed.count, rows = w->bodies.slot_count;
     int d, total = 0;
-    demi_kept *to;
-    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].kept;
+    demi_persistent *to;
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].persistent;
     if (!demi_carry_reserve(w, rows, had + come->pairs, come->stride) ||
         !DEMI_GROW(w, *add, (size_t)rows + 1) ||
-        !DEMI_GROW(w, w->kept_now, (size_t)(total + come->contacts)))
+        !DEMI_GROW(w, w->persistent_now, (size_t)(total + come->contacts)))
         return 0;
     if (!had) memset(w->filed.start, 0, ((size_t)rows + 2)*sizeof(int32_t));
     for (d = had ? w->filed.rows : rows; d < rows; d++) w->filed.start[d + 1] = w->filed.start[d];
     w->filed.rows = rows;
     w->filed.stride = come->stride;
-    to = w->kept_now;
+    to = w->persistent_now;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         demi_domain *o = &w->domains[d];
-        if (o->kept && d)
-            memmove(to, demi_kept_of(w, d), (size_t)o->kept*sizeof *to);
-        to += o->kept;
-        o->kept = 0;
+        if (o->persistent && d)
+            memmove(to, demi_persistent_of(w, d), (size_t)o->persistent*sizeof *to);
+        to += o->persistent;
+        o->persistent = 0;
     }
-    w->domains[0].kept = total;
+    w->domains[0].persistent = total;
     w->domain_count = DEMI_MAX(w->domain_count, 1);        /* of a world without a list so far */
-    for (d = 1; d <= DEMI_DOMAINS; d++) w->kept_first[d] = total + come->contacts;
+    for (d = 1; d <= DEMI_DOMAINS; d++) w->persistent_first[d] = total + come->contacts;
     return 1;
 }
 /* Adds `pairs` histories of a message to the filed ones, each at the end of its row. add: work
@@ -43970,8 +44017,9 @@ static void demi_filed_unpack(dem_world *w, int32_t *add, const demi_message_hea
     demi_pairs_unpack(w, add, from, h->pairs);
     from += (size_t)h->pairs*(3*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
     if (h->contacts)
-        demi_unpack(&from, w->kept_now + first->kept, (size_t)h->contacts*sizeof(demi_kept));
-    first->kept += h->contacts;
+        demi_unpack(&from, w->persistent_now + first->persistent,
+                    (size_t)h->contacts*sizeof(demi_persistent));
+    first->persistent += h->contacts;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -45325,7 +45373,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         return demi_no_memory(h, call);
     }
     for (k = 0; k < DEMI_DOMAINS; k++)          /* those of the slabs take over */
-        w->domains[k].kept = w->domains[k].contacts = 0;
+        w->domains[k].persistent = w->domains[k].contacts = 0;
     demi_filed_forget(w);
     memset(w->filed.start, 0, ((size_t)w->filed.rows + 2)*sizeof(int32_t));
     memset(*seen, 0, (size_t)s->slots + 1);

@@ -45,13 +45,13 @@ static dem_shape hull(dem_world *w, int corners) {
     return dem_shape_polyhedron_add(w, corners, x);
 }
 static int meet(const dem_world *w, int i, dem_vec3 gap) {
-    demi_kept c;
+    demi_persistent c;
     memset(&c, 0, sizeof c);
     return demi_polyhedra_touch(w, &pairs[i].p, &pairs[i].q, gap, 0, &c, 0);
 }
 /* The gap of pair i up to .1 of a radius; from: the normal to begin with, or 0; it comes back as the pair's. */
 static int gap_of(dem_world *w, int i, double size, dem_vec3 from, dem_vec3 *normal) {
-    demi_kept c;
+    demi_persistent c;
     demi_spots spots;
     memset(&c, 0, sizeof c);
     c.normal = from;

@@ -50,7 +50,7 @@ static const counted respond_smooth = {{0, 0}, {47, 9 + 32*REALS}, {0, 3*REALS},
 /* rest: a push that leads out, added at its other end; a wall contact: about 300 flops; its record written, and the first
    part of that of the last step read */
 static const counted rest_friction = {{0, 0}, {0, 0}, {6, 12 + 18*REALS}, {0, 0}, {0, 0},
-                                      {300, offsetof(demi_kept, more) + offsetof(demi_kept, arm_b)}};
+                                      {300, offsetof(demi_persistent, more) + offsetof(demi_persistent, arm_b)}};
 static const counted rest_smooth = {{0, 0}, {0, 0}, {3, 12 + 9*REALS}, {0, 0}, {0, 0}, {0, 0}};
 /* move: to kick and drift 9 a component, to kick spin 5; pace 19. Place, half velocity, force read and written (force:
    cleared), velocity written, inverse mass; the same for spin and torque. A quiet bead: 6; place read and written, half

@@ -79,9 +79,9 @@
        >>meets-polyhedra   contact geometry of polyhedra with other bodies
        >>meet-tables       functions by shape and by wall; contact geometry on a wall
        >>continued         which contact of the step before a persistent contact continues
-       >>kept              contacts with walls and of other shapes: persistent contacts
+       >>persistent              contacts with walls and of other shapes: persistent contacts
        >>points            contacts at points of bodies to forces and torques
-       >>kept-respond      persistent contacts: coefficients and histories
+       >>persistent-respond      persistent contacts: coefficients and histories
        >>members           contacts of spheres that may be members of clusters
      impulse/ - rigid grains: constraints, joints, solvers
        >>impulses          rigid grains: the contacts and constraints of a step
@@ -279,9 +279,9 @@
 #endif /* DEM_NO_POLYHEDRA */
 #include "contact/meet-tables.h"
 #include "contact/continued.h"
-#include "contact/kept.h"
+#include "contact/persistent.h"
 #include "contact/points.h"
-#include "contact/kept-respond.h"
+#include "contact/persistent-respond.h"
 #include "contact/members.h"
 #ifndef DEM_NO_IMPULSES
 #include "impulse/impulses.h"

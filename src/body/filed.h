@@ -89,33 +89,36 @@ static int demi_carry_collect(dem_world *w) {
 }
 
 /* Returns the persistent contacts of domain d. */
-DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
-    return w->kept_now + w->kept_first[d];
+DEM_INLINE demi_persistent *demi_persistent_of(const dem_world *w, int d) {
+    return w->persistent_now + w->persistent_first[d];
 }
 /* True if a contact is a later part of one with several walls: it continues what the first does. */
-DEM_INLINE int demi_kept_later(const demi_kept *c) { return c->odd && c->more.rank > 0; }
+DEM_INLINE int demi_persistent_later(const demi_persistent *c) {
+    return c->odd && c->more.rank > 0;
+}
 /* Returns the index of the old contact that a later part c continues: of the parts of the one that
    its first part continues, that with the same wall, else the first. end: of the body's old
    contacts. */
-static int demi_kept_part(const dem_world *w, int d, const demi_kept *end, const demi_kept *c) {
+static int demi_persistent_part(const dem_world *w, int d, const demi_persistent *end,
+                                const demi_persistent *c) {
     const int from = c[-c->more.rank*c->corners].from;
-    const demi_kept *now = demi_kept_of(w, d), *o = from < 0 ? end : now + from;
+    const demi_persistent *now = demi_persistent_of(w, d), *o = from < 0 ? end : now + from;
     do o += c->corners;
-    while (o < end && demi_kept_later(o) && o->wall != c->wall);
-    return o < end && demi_kept_later(o) ? (int)(o - now) : from;
+    while (o < end && demi_persistent_later(o) && o->wall != c->wall);
+    return o < end && demi_persistent_later(o) ? (int)(o - now) : from;
 }
 /* Lets each of the four points c[0] .. c[3] of a pressure continue the old point that lies where it
    does. This has another number if the direction in which the pressure is spread most has reversed
    in this step, or has turned by a right angle (demi_patch_along). Springs that pass to the
    opposite point would reverse the moment of friction about the normal. */
-static void demi_kept_turn(const dem_world *w, int d, demi_kept *c) {
+static void demi_persistent_turn(const dem_world *w, int d, demi_persistent *c) {
     static const unsigned char turned[4][4] = {{0, 1, 2, 3}, {2, 0, 3, 1}, {3, 2, 1, 0},
                                                {1, 3, 0, 2}};
-    const demi_kept *now = demi_kept_of(w, d);
+    const demi_persistent *now = demi_persistent_of(w, d);
     dem_vec3 is[4] = DEM_ZERO, was[4] = DEM_ZERO;
     dem_real same, right;
     int from[4], k, turns;
-    if (!demi_response_is(w, DEMI_PRESSING) || demi_kept_later(c)) return;
+    if (!demi_response_is(w, DEMI_PRESSING) || demi_persistent_later(c)) return;
     for (k = 0; k < 4; k++) {
         if (c[k].from < 0 || now[c[k].from].corners != 4) return;
         from[c[k].corner] = c[k].from;
@@ -128,7 +131,7 @@ static void demi_kept_turn(const dem_world *w, int d, demi_kept *c) {
     for (k = 0; k < 4 && turns; k++) c[k].from = from[turned[turns][c[k].corner]];
 }
 /* The weight of friction of all parts of a contact. */
-DEM_INLINE dem_real demi_kept_whole(const demi_kept *c) {
+DEM_INLINE dem_real demi_persistent_whole(const demi_persistent *c) {
     return c->odd && c->more.part > 0 ? c->grip/c->more.part : c->grip;
 }
 /* Marks in met[] which materials have touched. Persistent contacts are marked when they begin.
@@ -160,8 +163,8 @@ static int demi_list_drop(dem_world *w) {
     demi_met_look(w, w->booked.met);
     for (d = 0; d < w->domain_count; d++) {
         memset(w->domains[d].met, 0, sizeof w->domains[d].met);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent *c = demi_persistent_of(w, d) + k;
             c->a = (int32_t)w->bodies.slot[c->a];
             if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }

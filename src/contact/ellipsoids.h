@@ -1,9 +1,9 @@
 /* ---------------------------------------------------------------------------------------------
    >>ellipsoids
-   Contact points of ellipsoids with ellipsoids and spheres, a tile of pairs at a time. >>kept asks
-   for pairs in the order of its list. A tile is filled with the next pairs whose bounding spheres
-   overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all of them in
-   vectors. With the parameter of the step before as its start, one iteration is nearly always
+   Contact points of ellipsoids with ellipsoids and spheres, a tile of pairs at a time. >>persistent
+   asks for pairs in the order of its list. A tile is filled with the next pairs whose bounding
+   spheres overlap, and one iteration of Perram and Wertheim's method [PW85] runs over all of them
+   in vectors. With the parameter of the step before as its start, one iteration is nearly always
    enough; the other pairs are solved individually. Owns nothing; the tile belongs to the caller.
    --------------------------------------------------------------------------------------------- */
 
@@ -38,8 +38,8 @@ typedef struct demi_ellipsoid_tile {
     double s[3][DEMI_MEETS], normal[3][DEMI_MEETS], point[3][DEMI_MEETS];
     int32_t entry[DEMI_MEETS], from[DEMI_MEETS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
-    const demi_kept *old, *after;  /* first old contact of body a or of a later body; the one after
-                                      the last match */
+    const demi_persistent *old;    /* first old contact of body a or of a later body */
+    const demi_persistent *after;  /* the one after the last match */
 } demi_ellipsoid_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -138,9 +138,9 @@ DEM_INLINE dem_real demi_ellipsoid_body_put(const dem_world *w, demi_ellipsoid_t
                               demi_scale(shape->axes, scale));
 }
 /* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
-DEM_INLINE const demi_kept *demi_ellipsoids_old(demi_ellipsoid_tile *t, const demi_kept *last,
-                                                int a, int b) {
-    const demi_kept *o;
+DEM_INLINE const demi_persistent *demi_ellipsoids_old(demi_ellipsoid_tile *t,
+                                                      const demi_persistent *last, int a, int b) {
+    const demi_persistent *o;
     while (t->old < last && t->old->a < a) t->after = ++t->old;
     for (o = t->after; o < last && o->a == a && o->b != b;) o++;
     if (o == last || o->a != a)                 /* then those before that */
@@ -154,7 +154,8 @@ DEM_INLINE const demi_kept *demi_ellipsoids_old(demi_ellipsoid_tile *t, const de
 static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
                                              demi_ellipsoid_tile *t) {
     const int base = d*w->near.stride;
-    const demi_kept *now = demi_kept_of(w, d), *last = now + w->domains[d].kept, *o;
+    const demi_persistent *now = demi_persistent_of(w, d), *o;
+    const demi_persistent *last = now + w->domains[d].persistent;
     int k;
     t->count = t->next = 0;
     for (; p < end && t->count < DEMI_MEETS; p++) {

@@ -156,9 +156,9 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
 }
 /* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
-   while a has its part of all (demi_kept_more). Over all parts, the two are the same. */
+   while a has its part of all (demi_persistent_more). Over all parts, the two are the same. */
 DEM_INLINE dem_vec3 demi_point_own(const demi_points *t, int q, dem_vec3 *moment) {
-    const demi_kept *c = t->contact[q];
+    const demi_persistent *c = t->contact[q];
     const dem_vec3 force = demi_v(t->rows.force[0][q], t->rows.force[1][q], t->rows.force[2][q]);
     *moment = demi_v(t->rows.moment[0][q], t->rows.moment[1][q], t->rows.moment[2][q]);
     if (!c->odd || !(c->more.part > 0)) return force;
@@ -170,7 +170,7 @@ static void demi_point_wall(dem_world *w, int d, demi_points *t, int q) {
     const int i = -1 - t->b[q];
     const demi_wall *wall = &w->walls[i];
     demi_wall_sum *sum = &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)i];
-    demi_kept *c = t->contact[q];
+    demi_persistent *c = t->contact[q];
     dem_vec3 moment, rubs = demi_row(t->rows.force, q);
     c->force = demi_point_own(t, q, &moment);
     demi_wall_sum_add(w, sum, i, t->at[q], c->force, moment, t->surface[q]);

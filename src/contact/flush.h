@@ -358,7 +358,7 @@ typedef struct demi_flush_pair {
     int first, a, of, piece;       /* first: the fixed one is a of the contact; a, of: the free one
                                       and its part's number */
 } demi_flush_pair;
-static demi_flush_pair demi_flush_pair_of(const dem_world *w, const demi_kept *c,
+static demi_flush_pair demi_flush_pair_of(const dem_world *w, const demi_persistent *c,
                                           const demi_part *p, const demi_part *q) {
     demi_flush_pair o;
     int b;
@@ -490,10 +490,11 @@ static int demi_flush_pressed(const dem_world *w, const demi_flush_pair *c, demi
 /* --- the history of a contact that takes over from another one --- */
 
 /* Returns the first old contact of body a with a body, of its work group; null if it has none. */
-static const demi_kept *demi_flush_old(const dem_world *w, int a, const demi_kept **end) {
+static const demi_persistent *demi_flush_old(const dem_world *w, int a,
+                                             const demi_persistent **end) {
     const int d = demi_domain_of(w, a);
-    const demi_kept *old = demi_kept_of(w, d);
-    int lo = 0, hi = w->domains[d].kept;
+    const demi_persistent *old = demi_persistent_of(w, d);
+    int lo = 0, hi = w->domains[d].persistent;
     *end = old + hi;
     while (lo < hi) {
         const int mid = lo + (hi - lo)/2;
@@ -504,8 +505,8 @@ static const demi_kept *demi_flush_old(const dem_world *w, int a, const demi_kep
 }
 /* Lets a new contact c of two bodies (o) continue an old one of the free body with another fixed
    body, at nearly the same normal: of spheres and ellipsoids one that is covered now. */
-static void demi_flush_take_over(const dem_world *w, const demi_flush_pair *o, demi_kept *c) {
-    const demi_kept *best = 0, *old, *end;
+static void demi_flush_take_over(const dem_world *w, const demi_flush_pair *o, demi_persistent *c) {
+    const demi_persistent *best = 0, *old, *end;
     dem_real most = DEM_R(0.95), turn = 1;
     int k, e;
     for (k = o->row->from; k < o->row->to; k++) {
@@ -535,7 +536,7 @@ static void demi_flush_take_over(const dem_world *w, const demi_flush_pair *o, d
     c->from = DEMI_TAKEN_OVER;
 }
 /* The same for all points of a contact c of parts p and q. */
-static void demi_flush_follow(const dem_world *w, demi_kept *c, const demi_part *p,
+static void demi_flush_follow(const dem_world *w, demi_persistent *c, const demi_part *p,
                               const demi_part *q) {
     const int points = DEMI_MAX(c->corners, 1);
     demi_flush_pair o;
@@ -547,7 +548,7 @@ static void demi_flush_follow(const dem_world *w, demi_kept *c, const demi_part 
 }
 /* True if contact c of parts p and q, which have just been found to touch, is none of the common
    surface of fixed bodies. gap: from p's centre to q's, m; spots: its points, if it has several. */
-static int demi_flush_within(const dem_world *w, const demi_kept *c, const demi_part *p,
+static int demi_flush_within(const dem_world *w, const demi_persistent *c, const demi_part *p,
                              const demi_part *q, dem_vec3 gap, demi_spots *spots) {
     const demi_flush_pair o = demi_flush_pair_of(w, c, p, q);
     if (!o.row) return 0;

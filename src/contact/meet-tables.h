@@ -17,10 +17,10 @@ DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
 /* --- overlap, arm and radius of a part's contact with a wall, from a contact point that was found
    --- */
 typedef void (*demi_on_wall_fn)(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                const demi_touching *place, demi_kept *c);
+                                const demi_touching *place, demi_persistent *c);
 /* A sphere's. */
 DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                  const demi_touching *place, demi_kept *c) {
+                                  const demi_touching *place, demi_persistent *c) {
     (void)w; (void)wall;
     c->overlap = place->overlap;
     c->deep = c->overlap/p->radius;
@@ -29,7 +29,7 @@ DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, con
 }
 /* An ellipsoid's. place->overlap is 1 - W0, see dem_overlap. */
 static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                   const demi_touching *place, demi_kept *c) {
+                                   const demi_touching *place, demi_persistent *c) {
     demi_ellipsoid_overlap(w, p, place->overlap,
                            demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0), c);
     c->arm_a = demi_add(p->centre, c->arm_a);
@@ -37,14 +37,14 @@ static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, co
 /* A polyhedron's. R* is the radius of the sphere of equal volume; against a wall of grains it is
    set so large that demi_wall_r_eff returns the radius of these grains. */
 static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                    const demi_touching *place, demi_kept *c) {
+                                    const demi_touching *place, demi_persistent *c) {
     const int ball = demi_wall_is(wall, DEMI_BALLS);
     c->overlap = place->overlap;
     c->deep = place->deep;
     c->slope = place->slope;
     c->corner = place->corner;
     c->corners = place->corners;
-    demi_kept_odd(c)->couple = place->couple;
+    demi_persistent_odd(c)->couple = place->couple;
     c->more.spread = place->spread;
     if (place->part > 0) {
         c->wall = place->wall;

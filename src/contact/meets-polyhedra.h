@@ -6,7 +6,7 @@
    --------------------------------------------------------------------------------------------- */
 /* A sphere and a polyhedron, at the nearest point; R* is the sphere's radius, as on a plane. */
 static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                 dem_vec3 gap, demi_kept *c) {
+                                 dem_vec3 gap, demi_persistent *c) {
     const int first = p->kind == DEMI_BALL;
     const demi_part *ball = first ? p : q;
     demi_d3 at;
@@ -30,7 +30,7 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
 /* An ellipsoid and a polyhedron, as with walls: at the point that the ellipsoid touches first when
    it is scaled, by W0. */
 static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                dem_vec3 gap, demi_kept *c) {
+                                dem_vec3 gap, demi_persistent *c) {
     const int first = p->kind == DEMI_ELLIPSOID;
     const demi_part *ellipsoid = first ? p : q;
     dem_vec3 at, n;
@@ -50,7 +50,7 @@ static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, co
     demi_ellipsoid_overlap(w, ellipsoid, (dem_real)(1 - W0), 0, c);
     /* the force passes through the polyhedron's point */
     c->arm_a = dem_quat_rotate(ellipsoid->q, at);
-    demi_kept_odd(c)->outset = demi_v(0, 0, 0);
+    demi_persistent_odd(c)->outset = demi_v(0, 0, 0);
     if (!first) {
         c->normal = demi_scale(c->normal, -1);
         c->arm_a = demi_add(c->arm_a, gap);
@@ -58,7 +58,8 @@ static int demi_solid_ellipsoid_touch(const dem_world *w, const demi_part *p, co
     return 1;
 }
 static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                  dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
+                                  dem_vec3 gap, double lambda, demi_persistent *c,
+                                  demi_spots *spots) {
     const int ball = p->kind == DEMI_BALL || q->kind == DEMI_BALL;
     (void)lambda; (void)spots;
     if (!(ball ? demi_solid_ball_touch : demi_solid_ellipsoid_touch)(w, p, q, gap, c)) return 0;
@@ -70,7 +71,7 @@ static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const 
    a range, while there is no overlap. Then the nearest point is repeated four times, since contact
    by pressure has four points. */
 static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const demi_part *q,
-                               dem_vec3 gap, demi_kept *c, demi_spots *spots) {
+                               dem_vec3 gap, demi_persistent *c, demi_spots *spots) {
     const double ra = demi_part_equal(p), rb = demi_part_equal(q);
     const double range = (double)demi_range(w, p->radius + q->radius);
     const dem_vec3 from = demi_dot(c->normal, c->normal) > 0 ? c->normal : gap;
@@ -99,10 +100,11 @@ static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const dem
    common surface. c becomes the first of four contact points, which have this body's part of the
    force. */
 static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const demi_part *p,
-                           const demi_part *q, dem_vec3 gap, demi_kept *c, demi_spots *spots) {
+                           const demi_part *q, dem_vec3 gap, demi_persistent *c,
+                           demi_spots *spots) {
     const double r = demi_part_equal(o->part);
     demi_flush_press press;
-    demi_kept_more *more;
+    demi_persistent_more *more;
     demi_patch at;
     double overlap;
     if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)) ||
@@ -116,7 +118,7 @@ static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const d
     c->share = (dem_real)(at.force/press.force);
     c->r_eff = (dem_real)r;
     c->corners = 4;
-    more = demi_kept_odd(c);
+    more = demi_persistent_odd(c);
     more->part = c->share;
     more->couple = at.couple;
     more->spread = at.spread[0];
@@ -127,11 +129,12 @@ static int demi_flush_meet(const dem_world *w, const demi_flush_pair *o, const d
 }
 /* Two polyhedra by their common volume. c becomes the first of four contact points. */
 static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
+                                dem_vec3 gap, double lambda, demi_persistent *c,
+                                demi_spots *spots) {
     const double ra = demi_part_equal(p), rb = demi_part_equal(q), r_eff = ra*rb/(ra + rb);
     demi_solid a, b;
     demi_patch at;
-    demi_kept_more *more;
+    demi_persistent_more *more;
     demi_pressure s;
     double overlap;
     (void)lambda;
@@ -154,10 +157,10 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     c->deep = (dem_real)s.deep;
     c->r_eff = (dem_real)r_eff;
     c->corners = 4;
-    more = demi_kept_odd(c);
+    more = demi_persistent_odd(c);
     more->couple = at.couple;
     more->spread = at.spread[0];
-    more->aside = at.spread[1];    /* until demi_kept_spread */
+    more->aside = at.spread[1];    /* until demi_persistent_spread */
     c->arm_a = demi_add(p->centre, at.point);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;

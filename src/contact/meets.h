@@ -1,6 +1,6 @@
 /* ---------------------------------------------------------------------------------------------
    >>meets
-   Narrow phase for parts of two bodies: geometry only, into a contact that >>kept has begun.
+   Narrow phase for parts of two bodies: geometry only, into a contact that >>persistent has begun.
    Spheres use their centres, ellipsoids the contact point of Perram and Wertheim [PW85]. Owns
    nothing, and writes only the contacts that it is given.
    --------------------------------------------------------------------------------------------- */
@@ -9,11 +9,11 @@
    centre to q's; lambda: a start value, 0: unknown. spots: set if the contact has several points,
    each with its own gap, relative to p's centre; otherwise its count stays 0. --- */
 typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots);
+                            dem_vec3 gap, double lambda, demi_persistent *c, demi_spots *spots);
 /* Two spheres of radii r and s, at x and y from the centres of their bodies. The contact point
    divides their distance in the ratio of the radii. */
 DEM_INLINE int demi_balls_meet(const dem_world *w, dem_vec3 x, dem_real r, dem_vec3 y, dem_real s,
-                               dem_vec3 gap, demi_kept *c) {
+                               dem_vec3 gap, demi_persistent *c) {
     const dem_real d = demi_length(gap), sum = r + s;
     if (!(d < sum + demi_range(w, sum))) return 0;
     c->normal = d > 0 ? demi_scale(gap, 1/d) : demi_v(0, 0, 1);
@@ -26,15 +26,14 @@ DEM_INLINE int demi_balls_meet(const dem_world *w, dem_vec3 x, dem_real r, dem_v
     return 1;
 }
 static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_kept *c,
-                            demi_spots *spots) {
+                            dem_vec3 gap, double lambda, demi_persistent *c, demi_spots *spots) {
     (void)lambda; (void)spots;
     return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
 /* Writes the contact of two ellipsoids, row k of a tile, to c, except for its arms; one of them may
    be a sphere. p, q: the two; not read if the overlap is the conservative one. */
 DEM_INLINE void demi_ellipsoids_set(const dem_world *w, demi_ellipsoid_tile *t, int k,
-                                    const demi_part *p, const demi_part *q, demi_kept *c) {
+                                    const demi_part *p, const demi_part *q, demi_persistent *c) {
     c->lambda = t->to[k];
     c->normal = demi_d3_real(demi_ellipsoids_at(t->normal, k));
     c->deep = (dem_real)t->deep[k];
@@ -51,7 +50,7 @@ DEM_INLINE void demi_ellipsoids_set(const dem_world *w, demi_ellipsoid_tile *t, 
     }
 }
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                 dem_vec3 gap, double lambda, demi_kept *c,
+                                 dem_vec3 gap, double lambda, demi_persistent *c,
                                  demi_spots *spots) {
     demi_ellipsoid_tile t;
     dem_real thin = demi_ellipsoid_put(&t, 0, 0, p->q, demi_part_axes(p));
@@ -74,7 +73,7 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
    deepest point, as for a sphere. The gradient of l (1 - W0) passes through the point of the wall,
    at W0 times the arm. */
 static void demi_ellipsoid_overlap(const dem_world *w, const demi_part *p, dem_real left,
-                                   dem_real edge, demi_kept *c) {
+                                   dem_real edge, demi_persistent *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
     c->overlap = left*(h + edge);
     c->deep = c->overlap/h;
@@ -83,6 +82,6 @@ static void demi_ellipsoid_overlap(const dem_world *w, const demi_part *p, dem_r
         const dem_real l = (dem_real)demi_part_equal(p) + edge;
         c->overlap = left*l;
         c->slope = l/(h + edge);
-        demi_kept_odd(c)->outset = demi_scale(c->arm_a, left);
+        demi_persistent_odd(c)->outset = demi_scale(c->arm_a, left);
     }
 }

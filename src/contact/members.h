@@ -4,8 +4,9 @@
    pruned neighbour list then holds pairs of member spheres. A lone sphere is the only member of its
    body; pairs of two lone spheres come first in the list, and >>pairs computes them. Of the other
    pairs, a step finds those that touch. These fill tiles of >>points; their histories are in the
-   list. Contacts of the same two bodies may be merged (>>kept). Writes the forces and histories of
-   its pairs, their slots, near.on and near.hit (which >>near also uses while it builds a list).
+   list. Contacts of the same two bodies may be merged (>>persistent). Writes the forces and
+   histories of its pairs, their slots, near.on and near.hit (which >>near also uses while it builds
+   a list).
    --------------------------------------------------------------------------------------------- */
 
 /* Work of one group: a tile of contacts, which is evaluated when it is full. */
@@ -28,14 +29,14 @@ static void demi_members_clear(demi_member_tile *m) {
 /* Appends entry p of the pruned list to a tile. c: its weights if it is merged with others of the
    same two bodies, or null. */
 DEM_INLINE void demi_members_add(const dem_world *w, demi_member_tile *m, int p,
-                                 const demi_kept *c) {
+                                 const demi_persistent *c) {
     const int q = m->t.count++;
     m->p[q] = p;
     if (!c) return;
     demi_points_weights(w, &m->t, q, c);
     m->t.weighted = m->merged[q] = 1;
-    m->felt[0][q] = demi_sub(c->arm_a, demi_kept_felt(c));
-    m->felt[1][q] = demi_sub(c->arm_b, demi_kept_felt(c));
+    m->felt[0][q] = demi_sub(c->arm_a, demi_persistent_felt(c));
+    m->felt[1][q] = demi_sub(c->arm_b, demi_persistent_felt(c));
 }
 /* Fills the rows of a tile from its entries and the bodies. Arms lead to the centres of the
    spheres. send: 1 if forces on the bodies b go to slots. */
@@ -81,7 +82,7 @@ DEM_INLINE void demi_members_fetch(const dem_world *w, demi_member_tile *DEMI_RE
     }
 }
 /* Copies the histories of a tile's entries. If the weight of friction grows, a spring keeps its
-   force, as in demi_kept_past. */
+   force, as in demi_persistent_past. */
 static void demi_members_recall(const dem_world *w, demi_member_tile *DEMI_RESTRICT m, int d,
                                 int full) {
     const int at_grip = w->laws.at_grip, keep = w->memory_stride;
@@ -227,15 +228,16 @@ static void demi_members_respond(dem_world *w, demi_member_tile *m, int d, int s
 }
 /* Computes the weights of n contacts of work group d, of pairs of spheres of the same two bodies,
    into w->merging. hit: their entries. Returns them. */
-static const demi_kept *demi_members_merge(const dem_world *w, int d, const int32_t *hit, int n) {
-    demi_kept *const first = w->merging + (size_t)d*(size_t)w->merging_most;
+static const demi_persistent *demi_members_merge(const dem_world *w, int d, const int32_t *hit,
+                                                 int n) {
+    demi_persistent *const first = w->merging + (size_t)d*(size_t)w->merging_most;
     int i;
     for (i = 0; i < n; i++) {
         const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)hit[i];
         const dem_real *x = w->bodies.centre + 4*w->near.ball_a[at];
         const dem_real *y = w->bodies.centre + 4*w->near.ball_b[at];
-        demi_kept *c = first + i;
-        demi_kept_blank(c);
+        demi_persistent *c = first + i;
+        demi_persistent_blank(c);
         c->a = w->near.a[at];
         c->b = w->near.b[at];
         c->part_a = w->near.ball_a[at] - w->bodies.centre_start[c->a];
@@ -243,7 +245,7 @@ static const demi_kept *demi_members_merge(const dem_world *w, int d, const int3
         c->share = c->slope = 1;
         demi_balls_meet(w, demi_at(x), x[3], demi_at(y), y[3], demi_near_way(w, at), c);
     }
-    demi_kept_share(w, first, n);
+    demi_persistent_share(w, first, n);
     return first;
 }
 /* Finds which of entries p .. end - 1 touch or are within the range of the law, and clears the
@@ -294,7 +296,7 @@ static void demi_members_pairs(dem_world *w, int d) {
             if (p == begin || k[p] != k[p - 1]) demi_slot_clear(w, k[p]);
         n = demi_members_touch(w, d, begin, end, hit);
         for (p = 0; p < n; p += run) {
-            const demi_kept *c = 0;
+            const demi_persistent *c = 0;
             for (run = 1; merges && p + run < n && k[hit[p + run]] == k[hit[p]];) run++;
             if (run > 1) c = demi_members_merge(w, d, hit + p, run);
             for (i = 0; i < run; i++) {
@@ -320,7 +322,7 @@ static int demi_members_info(const dem_world *w, int d, int p, dem_contact_info 
     const int cross = p >= domain->near_cross;  /* near_cross may be 0 */
     const int from = cross ? domain->near_cross : 0;
     const int end = cross ? domain->near_end : domain->near_own;
-    const demi_kept *c = 0;
+    const demi_persistent *c = 0;
     DEMI_ALIGNED demi_member_tile m;
     int i, n = 0, at = 0;
     if (!demi_member_touches(w, base + (size_t)p)) return 0;

@@ -12,7 +12,8 @@ static int demi_notes_room(dem_world *w) {
     demi_events *e = &w->events;
     int d;
     for (d = 0, e->noted_first[0] = 0; d < DEMI_DOMAINS; d++) {
-        const int n = d < w->domain_count ? w->domains[d].near_end + w->domains[d].kept_next : 0;
+        const int n = d < w->domain_count ? w->domains[d].near_end + w->domains[d].persistent_next
+            : 0;
         e->noted_first[d + 1] = e->noted_first[d] + n;
         e->noted_count[d] = 0;
     }
@@ -52,7 +53,7 @@ static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *s
                            const demi_run *r) {
     int q, k;
     for (q = 0; q < span->count; q++) {
-        const demi_kept *c = span->points ? span->points->contact[q] : 0;
+        const demi_persistent *c = span->points ? span->points->contact[q] : 0;
         const int old = c ? c->from >= 0 : t->overlap[q] - t->closing[q]*r->same.dt > 0;
         const dem_vec3 normal = demi_row(t->normal, q);
         double energy[DEMI_E_ROLL + 1];

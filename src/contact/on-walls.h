@@ -2,7 +2,7 @@
    >>on-walls
    Contact points of parts of bodies with walls: geometry only. First spheres (and clusters, which
    are many spheres), then ellipsoids, which share the code for surfaces of facets; finally how the
-   normals rotate there as a sphere moves. >>kept makes contacts of the contact points.
+   normals rotate there as a sphere moves. >>persistent makes contacts of the contact points.
    --------------------------------------------------------------------------------------------- */
 
 /* m: candidates with gaps up to this, as of when the list was built, may touch now or be within the
@@ -41,7 +41,7 @@ typedef struct demi_view {
     const int32_t *cell;           /* their cells, of a tessellation that repeats */
     int count, left;               /* left: count, plus those of later images */
     int32_t base;                  /* added to the numbers of elements: tells cells apart */
-    int several;                   /* 1: other surfaces are near the body, see demi_kept_cover */
+    int several; /* 1: other surfaces are near the body, see demi_persistent_cover */
     int late;                      /* 1: the body was just set, and moves along with the wall */
     dem_vec3 shift, x;             /* m: from body to image; the part in the frame of the wall */
 } demi_view;
@@ -589,7 +589,7 @@ static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int cou
 #define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND, TESS) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
 /* Returns what only few contacts need, for a contact that needs it from now on. */
-DEM_INLINE demi_kept_more *demi_kept_odd(demi_kept *c) {
+DEM_INLINE demi_persistent_more *demi_persistent_odd(demi_persistent *c) {
     if (c->odd) return &c->more;
     c->odd = 1;
     memset(&c->more, 0, sizeof c->more);
@@ -598,9 +598,9 @@ DEM_INLINE demi_kept_more *demi_kept_odd(demi_kept *c) {
 /* Sets bend, along and axis for a sphere's contact. dist: m, from its centre to the surface;
    point: of the wall's surface, for the image of the body that touches it. */
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
-                           dem_vec3 point, demi_kept *c) {
+                           dem_vec3 point, demi_persistent *c) {
     const dem_real *R = wall->pose.rotation;
-    demi_kept_more *more;
+    demi_persistent_more *more;
     demi_bend b;
     if (!demi_bends[wall->kind]) return;
     memset(&b, 0, sizeof b);
@@ -611,7 +611,7 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
     demi_bends[wall->kind](wall, among, count, &b);
     c->bend = b.turn;
     if (b.along < 0 || b.along > 0 || demi_dot(b.axis, b.axis) > 0) {
-        more = demi_kept_odd(c);
+        more = demi_persistent_odd(c);
         more->along = b.along;
         more->axis = demi_rotate(R, b.axis);
     }

@@ -1,7 +1,8 @@
 /* ---------------------------------------------------------------------------------------------
    >>points
    Forces of contacts at points of bodies: of member spheres (>>members) and persistent contacts
-   (>>kept-respond), with bodies and walls, a tile at a time. Those two fill the tile: who touches,
+   (>>persistent-respond), with bodies and walls,
+       a tile at a time. Those two fill the tile: who touches,
    the arms from both centres to the contact, the relative motion of the centres, coefficients,
    weights and history. A wall is a body b with zero arm: velocities are relative to its surface at
    the contact. This part computes effective masses and the motion at the contact, evaluates the
@@ -115,8 +116,9 @@ DEMI_POINT_STAGE(demi_points_torques_weighted, demi_point_torques(t, q, 1, 1))
 
 /* True if two weights differ. */
 DEM_INLINE int demi_differ(dem_real a, dem_real b) { return a < b || a > b; }
-/* Sets the weights of row q to those of contact c (demi_kept). */
-DEM_INLINE void demi_points_weights(const dem_world *w, demi_points *t, int q, const demi_kept *c) {
+/* Sets the weights of row q to those of contact c (demi_persistent). */
+DEM_INLINE void demi_points_weights(const dem_world *w, demi_points *t, int q,
+                                    const demi_persistent *c) {
     t->share[q] = c->share;
     t->grip[q] = c->grip;
     t->slope[q] = c->slope;

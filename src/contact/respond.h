@@ -164,7 +164,7 @@ struct demi_run {
 typedef struct demi_points {
     demi_rows arm[2], mid[2];      /* m, from both centres to the contact: now; at mid-step */
     demi_rows spin[2], spun[2];    /* rad/s, of a and b: now; over the last step */
-    demi_rows outset;              /* m: see demi_kept_more */
+    demi_rows outset;              /* m: see demi_persistent_more */
     dem_real couple[DEMI_ROOM];    /* m: likewise */
     dem_real share[DEMI_ROOM], grip[DEMI_ROOM];            /* weights: of damping, of friction */
     dem_real lift[DEMI_ROOM];      /* weight of the elastic force, minus share */
@@ -177,10 +177,11 @@ typedef struct demi_points {
     demi_tile rows;
     /* the remaining fields are last, so that all rows begin on cache lines */
     int32_t a[DEMI_TILE], b[DEMI_TILE], k[DEMI_TILE];      /* see demi_span */
-    demi_kept *contact[DEMI_TILE]; /* null: of two member spheres */
+    demi_persistent *contact[DEMI_TILE]; /* null: of two member spheres */
     dem_real *home[DEMI_TILE];     /* where the history goes: real e to home[e*hop] */
     dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* m, point on a wall; m/s, its velocity */
-    dem_vec3 aside[DEMI_TILE], side[2][DEMI_TILE]; /* see demi_kept_more; m, arms of a and b where
+    dem_vec3 aside[DEMI_TILE],
+        side[2][DEMI_TILE]; /* see demi_persistent_more; m, arms of a and b where
                                                       it acts */
     unsigned char raised[DEMI_TILE];               /* 1: lifted; 2: likewise, with `aside` */
     const demi_coefs_row *filled[DEMI_TILE];       /* what base and root contain; null: unknown */

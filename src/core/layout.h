@@ -7,7 +7,6 @@
    Words of the code, beside those of the glossary:
        word in names       meaning
        domain              a work group of some 2000 neighbouring bodies
-       kept                a persistent contact, for example with a wall: see demi_kept
        ball                a sphere of a pair: a member of a cluster, or a lone sphere
        near                the pruned neighbour list: the candidates that may touch within some
                            steps (>>near). Forces are computed for these only. The contact history
@@ -57,7 +56,7 @@ typedef struct demi_list {
 } demi_list;
 
 /* With impulses: pairs of member spheres of two bodies that may touch: part a[k] of one body, b[k]
-   of the other, in the order of contacts. >>kept fills it when it first computes the pair. */
+   of the other, in the order of contacts. >>persistent fills it when it first computes the pair. */
 typedef struct demi_near_balls {
     uint8_t count;                 /* pairs; DEMI_BALLS_UNKNOWN: not computed since the list was
                                       built; DEMI_BALLS_ALL: too many, test all */
@@ -116,10 +115,10 @@ typedef struct demi_touching {
     dem_real overlap, share;       /* m; weight of its force (of facets: see >>facets) */
     dem_vec3 normal, point;        /* unit, body -> wall; m */
     dem_vec3 shift;                /* m, from the body to its image that touches the wall */
-    dem_vec3 spread;               /* this and the rest: of polyhedra, as in demi_kept */
+    dem_vec3 spread;               /* this and the rest: of polyhedra, as in demi_persistent */
     dem_real slope, couple, deep;
     int32_t corner, corners;
-    int32_t wall, rank;            /* this and the rest: as in demi_kept_more, if part > 0 */
+    int32_t wall, rank;            /* this and the rest: as in demi_persistent_more, if part > 0 */
     dem_real part;
     dem_vec3 lean, turn;
 } demi_touching;
@@ -163,11 +162,11 @@ typedef struct demi_shape {
     dem_vec3 centre;               /* m, centre of mass in that frame */
 } demi_shape;
 
-/* What only few persistent contacts need (demi_kept_odd). */
-typedef struct demi_kept_more {
+/* What only few persistent contacts need (demi_persistent_odd). */
+typedef struct demi_persistent_more {
     dem_vec3 felt;                 /* m, to the contact point from the point at which effective
                                       masses are evaluated for the dashpot */
-    dem_real area, added, rate;    /* A of demi_kept_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
+    dem_real area, added, rate; /* A of demi_persistent_share, m2; A/d^2 - 1; d(A/d^2)/d(added) */
     dem_vec3 axis;                 /* unless 0: displacements along this unit vector */
     dem_real along;                /* rotate the normal by `along`, 1/m, instead of by `bend` */
     dem_vec3 aside;                /* elastic force across the normal, over that along it */
@@ -179,16 +178,17 @@ typedef struct demi_kept_more {
     dem_vec3 lean, turn;           /* 1, m: what the wall's force and moment have beyond that part,
                                       over the normal force */
     int32_t rank;                  /* 0: the first wall; others continue what the first does */
-} demi_kept_more;
+} demi_persistent_more;
 /* A persistent contact: any contact except sphere on sphere and, with springs, except those of
    spheres of clusters. (The history of two spheres is in the pruned neighbour list.) It exists as
    long as the two touch. The contacts of a work group are in the order of body a, pairs before
-   walls; forces are added in this order. In each step, touch builds the list kept_next from scratch
-   and finds for each contact the one of the previous step (kept_now) that it continues. respond
-   continues the history of that contact and computes the forces. Then the two lists are swapped, so
-   touch can start again with more room. Reading and writing it takes most of the time, so what the
-   next step needs comes first, and what few contacts need last. */
-typedef struct demi_kept {
+   walls; forces are added in this order. In each step,
+       touch builds the list persistent_next from scratch
+   and finds for each contact the one of the previous step (persistent_now) that it continues.
+   respond continues the history of that contact and computes the forces. Then the two lists are
+   swapped, so touch can start again with more room. Reading and writing it takes most of the time,
+   so what the next step needs comes first, and what few contacts need last. */
+typedef struct demi_persistent {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* member spheres or pieces, else 0 */
     int32_t wall, element;
@@ -200,24 +200,24 @@ typedef struct demi_kept {
     int32_t corner, corners;       /* number of this point and number of points of the contact of
                                       two polyhedra, or of one and a wall; corners 0: one point */
     int32_t odd;                   /* 0: `more` counts as 0, whatever it contains */
-    int32_t row;                   /* its coefficients, see demi_kept_row; -1: no law was asked */
+    int32_t row; /* its coefficients, see demi_persistent_row; -1: no law was asked */
     double lambda;                 /* parameter of Perram and Wertheim; 0: unknown */
     dem_vec3 normal, arm_a;        /* unit, a -> b; m, from a's centre to the contact point */
     dem_real grip;                 /* weight of friction */
     dem_real memory[DEMI_MEMORY];  /* contact history: memory_stride reals; touch does not set it */
     dem_vec3 arm_b;                /* m, from b's centre */
-    dem_real overlap, deep;        /* m; < 0: a gap; 0: no force (demi_kept_asked). deep: overlap
+    dem_real overlap, deep; /* m; < 0: a gap; 0: no force (demi_persistent_asked). deep: overlap
                                       over the smaller half width (of a sphere: its radius) */
     dem_real share, lift;          /* weights of damping, elastic force; */
-    dem_real weight;               /* before contacts are merged: demi_kept_share */
+    dem_real weight;               /* before contacts are merged: demi_persistent_share */
     dem_real held;                 /* friction weight that it inherits from the previous step; < 0:
-                                      all of it, see demi_kept_inherit */
+                                      all of it, see demi_persistent_inherit */
     dem_real bend, slope;          /* per distance: turn of the normal, 1/m; change of overlap */
     dem_real r_eff;                /* m */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as in demi_touching */
-    demi_kept_more more;
-} demi_kept;
+    demi_persistent_more more;
+} demi_persistent;
 /* Coefficients of persistent contacts. Those that agree in the first fields share a row, unless
    there are many kinds of them. */
 typedef struct demi_coefs_row {
@@ -269,18 +269,18 @@ typedef struct demi_domain {
     int near_own, near_cross, near_end;    /* pruned list: end of pairs inside; begin and end of
                                       pairs with later groups; */
     int near_shaped, near_shaped_cross, near_shaped_end;   /* behind them, the same for all other
-                                      pairs of bodies: >>kept finds their contacts */
+                                      pairs of bodies: >>persistent finds their contacts */
     int near_lone[2];              /* number of pairs of two lone spheres (demi_lone), which come
                                       first among the pairs inside, and among those with later
                                       groups; 0 unless effects.clustered */
     int near_next_own, near_next_cross, near_next_end;     /* the same of the list being built */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
     int contacts, merging;         /* between bodies; the most entries for the same two bodies */
-    int kept, kept_next;           /* persistent contacts in kept_now and kept_next */
-    int kept_walls;                /* those with walls */
+    int persistent, persistent_next; /* persistent contacts in persistent_now and persistent_next */
+    int persistent_walls;          /* those with walls */
     /* impulses, 1: a contact of polyhedra has several points; a contact has three or more */
     int faced, seated;
-    int kept_same;                 /* where demi_kept_same starts its search */
+    int persistent_same;           /* where demi_persistent_same starts its search */
     int coefs;                     /* rows in use of w->coefs */
     int touching_first;            /* begin of its segment of w->touching */
     int overflow;                  /* lists that ran out of room: 1 pairs inside, 2 pairs with later
@@ -329,7 +329,7 @@ enum {
     DEMI_BALLS = 4,                /* elements are grains: spheres of `radius` about their corner */
     DEMI_FLAT = 8,                 /* the half space beyond z = 0 */
     DEMI_CROSSED = 16,             /* has points of negative weight, as where the wires of a sieve
-                                      cross: demi_kept_crossed */
+                                      cross: demi_persistent_crossed */
     DEMI_SMOOTH = 32,              /* has no edges */
     DEMI_ONLY_GAPS = 64            /* its function for polyhedra finds gaps, not pressure */
 };

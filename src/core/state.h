@@ -181,15 +181,16 @@ typedef struct demi_bodies {
     dem_body_counts balance;
 } demi_bodies;
 /* Saved contact history. While a list is valid, the history of two spheres is stored in the columns
-   of the pruned list; every other contact stores its own (demi_kept). A new pruned list copies the
-   columns of the previous one (near_last), pair by pair. Before a rebuild, and when bodies are
-   added or removed (demi_list_drop), indices are about to change. Then the history of spheres is
-   saved here, by slot, and persistent contacts store slots instead of indices. The next list reads
-   the saved history (demi_near_make), and persistent contacts move to the work groups of their
-   bodies (demi_kept_move). If the two bodies of a contact exchange their roles, because the other
-   one now has the lower index, vectors change sign. Nothing is discarded before the new list is
-   fully allocated, so a rebuild that ran out of memory can be repeated. Checkpoints contain all of
-   it. Entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is `row`. */
+   of the pruned list; every other contact stores its own (demi_persistent). A new pruned list
+   copies the columns of the previous one (near_last), pair by pair. Before a rebuild, and when
+   bodies are added or removed (demi_list_drop), indices are about to change. Then the history of
+   spheres is saved here, by slot, and persistent contacts store slots instead of indices. The next
+   list reads the saved history (demi_near_make), and persistent contacts move to the work groups of
+   their bodies (demi_persistent_move). If the two bodies of a contact exchange their roles, because
+   the other one now has the lower index, vectors change sign. Nothing is discarded before the new
+   list is fully allocated, so a rebuild that ran out of memory can be repeated. Checkpoints contain
+   all of it. Entries start[row] .. start[row + 1] - 1 belong to the pairs whose lower slot is
+   `row`. */
 enum { DEMI_BALLS_MOST = 1024 };               /* > largest number of spheres of a cluster */
 typedef struct demi_filed {
     int32_t *start;                /* rows + 2 */
@@ -444,7 +445,7 @@ struct dem_world {
     /* >>shapes */
     int shape_count;
     demi_shape *shapes;
-    /* >>bodies; motion: >>integrators; forces: >>respond, >>kept */
+    /* >>bodies; motion: >>integrators; forces: >>respond, >>persistent */
     demi_bodies bodies;
     demi_filed filed;
     /* >>walls; weights of facets: >>facets; poses and loads: >>step; new motions: >>steering */
@@ -526,9 +527,9 @@ struct dem_world {
     demi_touching *touching;       /* contact points of one body and wall, for each work group */
     int32_t *touching_table;
     demi_link *touching_links;
-    int kept_first[DEMI_DOMAINS + 1];   /* where those of group d begin, in either list */
-    demi_kept *kept_now, *kept_next;
-    demi_coefs_row *coefs;         /* of group d from 2*kept_first[d] on, see demi_kept_row */
+    int persistent_first[DEMI_DOMAINS + 1]; /* where those of group d begin, in either list */
+    demi_persistent *persistent_now, *persistent_next;
+    demi_coefs_row *coefs; /* of group d from 2*persistent_first[d] on, see demi_persistent_row */
     demi_flush flush;              /* >>flush */
     /* >>near */
     demi_near near, near_last;     /* the pruned list; the previous one: a rebuild swaps the two */
@@ -538,7 +539,7 @@ struct dem_world {
     struct demi_quiet *quiet;      /* isolation of blocks of bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* 1: being built after a search; head: some is due */
     int grown;                     /* >>growth: radii have just changed; not state */
-    demi_kept *merging;            /* >>members: contacts to merge, merging_most per work group */
+    demi_persistent *merging;      /* >>members: contacts to merge, merging_most per work group */
     int merging_most;
     struct demi_solver solver;     /* >>impulses */
     demi_events events;            /* >>events; noted: >>noted, >>impulses-told */

@@ -59,7 +59,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
     out[DEMI_SERVO_FORCE] = demi_servo_force(first, w, of);
     out[DEMI_SERVO_STIFFNESS] = out[DEMI_SERVO_DAMPING] = 0;
     for (d = 0; d < w->domain_count; d++) {
-        const demi_kept *c = demi_kept_of(w, d), *end = c + w->domains[d].kept;
+        const demi_persistent *c = demi_persistent_of(w, d), *end = c + w->domains[d].persistent;
         for (; c < end && w->domains[d].walls; c++) {
             const double slope = (double)c->slope;
             dem_real coef[DEMI_COEFS], root[2];
@@ -68,7 +68,7 @@ static void demi_servo_part(const dem_world *w, int of, double *out) {
             if (c->b >= 0 || demi_is_ghost(w, c->a) ||
                 !demi_walls_alike(&walls[c->wall], &walls[of]) ||
                 (!(c->overlap > 0) && !(w->margin.reach > 0))) continue;
-            demi_kept_coefs(w, c, coef, root);
+            demi_persistent_coefs(w, c, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[c->a]);
             s = demi_stiffness_normal(w, coef, (double)DEMI_MAX(c->overlap, 0));
             if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];

@@ -18,9 +18,9 @@
    the tile. */
 static void demi_steer_tile(dem_world *w, demi_points *t, dem_real sign) {
     int q;
-    demi_kept_evaluate(w, t);
+    demi_persistent_evaluate(w, t);
     for (q = 0; q < t->count; q++) {
-        demi_kept *c = t->contact[q];
+        demi_persistent *c = t->contact[q];
         dem_vec3 force, torque;
         c->force = demi_point_own(t, q, &torque);
         force = demi_row(t->rows.force, q);
@@ -36,14 +36,14 @@ static void demi_steer_tile(dem_world *w, demi_points *t, dem_real sign) {
 static void demi_steer(dem_world *w, int wall, dem_real sign) {
     DEMI_ALIGNED demi_points tile;
     int d, k, known;
-    demi_kept_tile_begin(w, &tile, 0, DEMI_TILE);
+    demi_persistent_tile_begin(w, &tile, 0, DEMI_TILE);
     for (d = 0; d < w->domain_count; d++) {
-        known = demi_kept_rows_begin(w, d, w->domains[d].kept);
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
-            if (c->b >= 0 || c->wall != wall || !demi_kept_asked(w, c)) continue;
+        known = demi_persistent_rows_begin(w, d, w->domains[d].persistent);
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent *c = demi_persistent_of(w, d) + k;
+            if (c->b >= 0 || c->wall != wall || !demi_persistent_asked(w, c)) continue;
             if (w->bodies.shaped) demi_yields_turn(w, c->a, c->a + 1);
-            demi_kept_add(&tile, c, c, c->memory, demi_kept_row(w, d, c, c, known));
+            demi_persistent_add(&tile, c, c, c->memory, demi_persistent_row(w, d, c, c, known));
             if (tile.count == DEMI_TILE) demi_steer_tile(w, &tile, sign);
         }
         if (tile.count) demi_steer_tile(w, &tile, sign);

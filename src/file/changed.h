@@ -170,7 +170,7 @@ static dem_result demi_changes_apply(dem_world *w, void *how) {
             demi_pair_put(w, i, j, &pair);
         }
     if (c->laws) demi_filed_forget(w);          /* they mean something else */
-    for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].kept = 0;
+    for (d = 0; d < w->domain_count && c->laws; d++) w->domains[d].persistent = 0;
     if (c->pairs) demi_surfaces_outdated(w);
     if (!w->desc.ledger) demi_events_clear(w);  /* without an account nothing is recorded */
     if (w->desc.ledger && !c->ledger) {            /* its account begins now */

@@ -118,10 +118,11 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
-        for (k = 0; k < domain->kept && !s->from; k++)
-            demi_kept_tidy(w, demi_kept_of(w, d) + k);
-        if (domain->kept)
-            demi_visit(s, demi_kept_of(w, d), (size_t)domain->kept*sizeof(demi_kept));
+        for (k = 0; k < domain->persistent && !s->from; k++)
+            demi_persistent_tidy(w, demi_persistent_of(w, d) + k);
+        if (domain->persistent)
+            demi_visit(s, demi_persistent_of(w, d),
+                       (size_t)domain->persistent*sizeof(demi_persistent));
     }
     if (w->stage.list_valid || !w->filed.count) return;
     demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
@@ -161,7 +162,7 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     int d;
     demi_visit_numbers(w, s);
     for (d = 0; d < w->domain_count; d++) {
-        w->domains[d].coefs = 0;                /* see demi_kept_tidy */
+        w->domains[d].coefs = 0;                /* see demi_persistent_tidy */
         w->domains[d].check = 0;                /* of the last step, which it has passed */
     }
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
@@ -187,7 +188,7 @@ typedef struct demi_checkpoint_head {
    the arrays of bodies. It differs for another dem.h, another memory layout of the compiler and
    another DEM_DOMAIN_BODIES. */
 static uint32_t demi_checkpoint_layout(void) {
-    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
+    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_persistent), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_strained),
                             sizeof(demi_joint), sizeof(demi_rail), sizeof(demi_written),

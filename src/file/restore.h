@@ -188,14 +188,14 @@ static int demi_domain_check(const demi_reader *r, int d) {
     const int64_t counts[] = {o->own, o->cross, o->walls, o->near_own,
         (int64_t)o->near_end - o->near_cross, (int64_t)o->near_shaped_cross - o->near_shaped,
         (int64_t)o->near_shaped_end - o->near_shaped_cross, o->contacts,
-        o->kept, o->kept_walls, o->near_cross, o->near_end, o->near_shaped,
+        o->persistent, o->persistent_walls, o->near_cross, o->near_end, o->near_shaped,
         o->near_shaped_cross, o->near_shaped_end};
     const int group = DEMI_LANES;
     size_t i;
     for (i = 0; i < sizeof counts/sizeof *counts; i++)
         if (counts[i] < 0 || counts[i] > INT_MAX/64) return 0;
-    if (!demi_left(r, o->kept, sizeof(demi_kept)) ||
-        (o->kept && !t->wall_count && !t->bodies.orienting)) return 0;
+    if (!demi_left(r, o->persistent, sizeof(demi_persistent)) ||
+        (o->persistent && !t->wall_count && !t->bodies.orienting)) return 0;
     if (!t->stage.list_valid) return 1;
     return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
            o->end <= t->bodies.count && (d + 1 < t->domain_count || o->end == t->bodies.count) &&
@@ -357,8 +357,8 @@ static int demi_contacts_check(const demi_reader *r) {
     const int who = t->stage.list_valid ? t->bodies.count : t->bodies.slot_count;
     int d, k;
     for (d = 0; d < t->domain_count; d++) {
-        for (k = 0; k < t->domains[d].kept; k++) {
-            const demi_kept *c = demi_kept_of(t, d) + k;
+        for (k = 0; k < t->domains[d].persistent; k++) {
+            const demi_persistent *c = demi_persistent_of(t, d) + k;
             if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || !demi_finite3(c->shift) ||
                 (c->b >= 0 && !t->bodies.orienting) ||
                     (c->b < 0 && (c->wall < 0 || c->wall >= t->wall_count ||
@@ -451,7 +451,7 @@ static int demi_twin_lists_room(dem_world *t) {
                               t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
                                   ? o->walls : 0, t->domain_count > 1};
         for (k = 0; k < 5; k++) most[k] = DEMI_MAX(most[k], counts[k]);
-        crowd[d] = o->kept;
+        crowd[d] = o->persistent;
     }
     if (t->stage.list_valid) {
         most[0] = DEMI_MAX(most[0], DEMI_MAX(64, each*3));
@@ -461,11 +461,11 @@ static int demi_twin_lists_room(dem_world *t) {
     }
     for (k = 0; k < 4; k++) if (k != 2) most[k] += t->join_room;
     most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
-    demi_kept_lay(t, t->stage.list_valid ? t->domain_count : 0, crowd, t->kept_first);
+    demi_persistent_lay(t, t->stage.list_valid ? t->domain_count : 0, crowd, t->persistent_first);
     if (!demi_wall_sums_room(t) ||
-        !DEMI_GROW(t, t->kept_now, (size_t)t->kept_first[DEMI_DOMAINS]) ||
-        !DEMI_GROW(t, t->kept_next, (size_t)t->kept_first[DEMI_DOMAINS]) ||
-        !DEMI_GROW(t, t->coefs, 2*(size_t)t->kept_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->persistent_now, (size_t)t->persistent_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->persistent_next, (size_t)t->persistent_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->coefs, 2*(size_t)t->persistent_first[DEMI_DOMAINS]) ||
         !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
     return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&

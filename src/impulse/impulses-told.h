@@ -34,14 +34,14 @@ static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
     const demi_solver_row *solver = &demi_solvers[w->desc.solver];
     const size_t bodies = (size_t)w->bodies.count;
-    size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
+    size_t movers = bodies + (size_t)w->persistent_first[DEMI_DOMAINS], n = 0;
     int d;
     if (!demi_joints_room(w)) return 0;
     movers += (size_t)w->joint_count;
     s->mover_count = (int)movers;
     for (d = 0; d < w->domain_count; d++) {
         s->meeting_first[d] = (int)n;
-        n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
+        n += (size_t)(w->domains[d].near_end + w->domains[d].persistent_next);
     }
     s->twisted = demi_impulses_twist(w);
     return DEMI_GROW(w, s->meetings, n) && DEMI_GROW(w, s->contacts, n) &&
@@ -129,7 +129,7 @@ static void demi_movers_force(dem_world *w, int d) {
 /* Notes a solved contact for events. old: it had an impulse before; energy: J, lost by its normal
    impulse, slip and rolling. */
 static DEMI_APART void demi_impulse_note(dem_world *w, int d, const demi_meeting *m,
-                                         const demi_spot *o, const demi_kept *k, int old,
+                                         const demi_spot *o, const demi_persistent *k, int old,
                                          dem_real force, const double *energy) {
     const int wall = k && k->b < 0;
     double all[DEMI_E_ROLL + 1] = {0};
@@ -154,12 +154,13 @@ static void demi_impulses_tell(dem_world *w, int d) {
                                      w->booked.speed_max);
     double *lost = domain->energy;              /* J, of the coming step */
     int i, e, counted = 0;
-    domain->contacts = domain->kept_walls = 0;
+    domain->contacts = domain->persistent_walls = 0;
     for (i = 0; i < s->meeting_count[d]; i++) {
         const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
         const demi_impulse *c = s->contacts + m->at;
         const demi_spot o = demi_meeting_place(w, d, m);
-        demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
+        demi_persistent *k = m->home < 0 ? w->persistent_next + w->persistent_first[d] + ~m->home
+            : 0;
         dem_real *memory = k ? k->memory : w->near.memory +
             (size_t)d*DEMI_IMPULSE_REALS*o.stride + m->home;
         const dem_real push = c->push - s->beside[m->at].pull;
@@ -206,7 +207,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
             demi_wall_sum_add(w, sum, k->wall, at, demi_scale(p, -per), demi_scale(moment, -per),
                               demi_at(s->movers[m->b].v));
             sum->contacts += counts;
-            domain->kept_walls += counts;
+            domain->persistent_walls += counts;
         } else domain->contacts += counts;
     }
 }

@@ -257,11 +257,11 @@ static int demi_joined(const dem_world *w, int a, int b, int wall) {
    walls. Clears the contact history of pairs that are none. */
 static void demi_impulses_meet(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_kept *now = demi_kept_of(w, d);
+    const demi_persistent *now = demi_persistent_of(w, d);
     const size_t stride = (size_t)w->near.stride;
     demi_solver *s = &w->solver;
     demi_meeting *m = s->meetings + s->meeting_first[d];
-    const demi_kept *last = 0;
+    const demi_persistent *last = 0;
     int p, e, i, run = 0;
     domain->faced = domain->seated = 0;
     for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
@@ -283,15 +283,15 @@ static void demi_impulses_meet(dem_world *w, int d) {
         if (!(l2 > 0) && s->movers[a].inv + s->movers[b].inv > 0 && !demi_joined(w, a, b, -1))
             domain->overlap = 2;                /* at the same position: there is no normal */
     }
-    for (i = 0; i < domain->kept_next; i++) {
-        demi_kept *k = w->kept_next + w->kept_first[d] + i;
-        demi_kept_recall(w, now, k);
+    for (i = 0; i < domain->persistent_next; i++) {
+        demi_persistent *k = w->persistent_next + w->persistent_first[d] + i;
+        demi_persistent_recall(w, now, k);
         k->force = demi_v(0, 0, 0);
-        if (demi_kept_asked(w, k) && !demi_joined(w, k->a, k->b, k->wall) &&
+        if (demi_persistent_asked(w, k) && !demi_joined(w, k->a, k->b, k->wall) &&
             s->movers[k->a].inv + (k->b >= 0 ? s->movers[k->b].inv : 0) > 0) {
             m->a = k->a;
-            m->b = k->b >= 0 ? k->b : w->bodies.count + w->kept_first[d] + i;
-            m->same = last && last->a == k->a && last->b == k->b && demi_kept_one(w, last, k);
+            m->b = k->b >= 0 ? k->b : w->bodies.count + w->persistent_first[d] + i;
+            m->same = last && last->a == k->a && last->b == k->b && demi_persistent_one(w, last, k);
             m++->home = ~i;
             last = k;
             run = m[-1].same ? run + 1 : 1;
@@ -384,8 +384,8 @@ typedef struct demi_spot {
 /* Returns what is to be added to the gap of two bodies, m, if one was just set and is not half a
    step ahead: the gap is that at its time. The way between the centres is (demi_near_level), but
    the other body has turned. At walls contacts are those of that time, see `late`. */
-static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, const demi_kept *k,
-                                  const demi_spot *o) {
+static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m,
+                                  const demi_persistent *k, const demi_spot *o) {
     const int late = k && k->b < 0 ? 0 : demi_pair_late(w, m->a, m->b);
     const int body = late > 0 ? m->a : m->b;
     if (!late) return 0;
@@ -394,7 +394,8 @@ static dem_real demi_meeting_late(const dem_world *w, const demi_meeting *m, con
 }
 /* Returns the geometry and the history of a constraint of domain d. */
 static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meeting *m) {
-    const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
+    const demi_persistent *k = m->home < 0 ? w->persistent_next + w->persistent_first[d] + ~m->home
+        : 0;
     demi_spot o;
     if (!k) {
         const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)m->home;
@@ -426,7 +427,7 @@ static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meetin
     return o;
 }
 /* Sets the solver body of a wall contact to the velocity of the wall's surface there. */
-static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover *m) {
+static void demi_surface_lay(const dem_world *w, const demi_persistent *k, demi_mover *m) {
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
     dem_vec3 v = demi_surface_at(&wall->ahead, demi_add(x, k->arm_a));
@@ -443,7 +444,8 @@ static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover 
    bodies still have), minus the change of the wall's own velocity. The correction never exceeds the
    closing velocity, so it adds no energy. *hits receives the rest of the closing velocity, m/s,
    which is an impact. */
-static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, const demi_kept *k,
+static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m,
+                                   const demi_persistent *k,
                                    const demi_spot *o, dem_real closing, dem_real *hits) {
     const dem_real *y = o->memory;
     dem_real turned = closing - y[8*o->stride];
@@ -488,7 +490,8 @@ static void demi_impulses_lay(dem_world *w, int d) {
     int i;
     for (i = 0; i < s->meeting_count[d]; i++) {
         const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
-        const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
+        const demi_persistent *k = m->home < 0
+            ? w->persistent_next + w->persistent_first[d] + ~m->home : 0;
         const demi_spot o = demi_meeting_place(w, d, m);
         const dem_pair *pair = &w->pairs[(w->bodies.material[m->a] - 1)*DEMI_MATERIALS +
                                          o.material].given;

@@ -125,7 +125,7 @@ static int demi_joints_room(dem_world *w) {
                              d->b.slot ? demi_body_find(w, d->b) : -1};
         memset(r, 0, sizeof *r);
         r->a = body[0];
-        r->b = body[1] >= 0 ? body[1] : w->bodies.count + w->kept_first[DEMI_DOMAINS] + i;
+        r->b = body[1] >= 0 ? body[1] : w->bodies.count + w->persistent_first[DEMI_DOMAINS] + i;
         for (e = 0; e < 2; e++) {
             r->ends[e] = -1;
             if (body[e] < 0) continue;

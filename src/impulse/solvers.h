@@ -465,7 +465,7 @@ static void demi_gradient_brought(dem_world *w, int index) {
 /* Computes the product of N and BY, into BROUGHT. Returns the sums of demi_gradient_brought. */
 static demi_run_sums demi_gradient_product(dem_world *w) {
     demi_solver *s = &w->solver;
-    const int movers = w->bodies.count + w->kept_first[DEMI_DOMAINS];
+    const int movers = w->bodies.count + w->persistent_first[DEMI_DOMAINS];
     int i, k;
     for (i = 0; i < movers; i++)
         for (k = 0; k < 3; k++) s->movers[i].v[k] = s->movers[i].w[k] = 0;
@@ -586,7 +586,7 @@ enum { DEMI_SAXCE = 25 };                       /* steps between two calls of de
 static demi_solved demi_solve_gradient(dem_world *w, int most,
                                        demi_run_sums (*step)(dem_world *w, double *a, double *b)) {
     demi_solver *s = &w->solver;
-    const size_t movers = (size_t)(w->bodies.count + w->kept_first[DEMI_DOMAINS]);
+    const size_t movers = (size_t)(w->bodies.count + w->persistent_first[DEMI_DOMAINS]);
     const int coulomb = w->desc.cone == DEM_CONE_COULOMB;
     demi_solved o = {0, 0, 0, 0};
     double a = 1, b = 1;

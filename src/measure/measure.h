@@ -18,11 +18,11 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
         if (!demi_contacts_known(w)) continue;
         c.contacts += w->domains[d].contacts;
-        c.wall_contacts += w->domains[d].kept_walls;
-        for (k = 0; k < w->domains[d].kept && pressing; k++) {
+        c.wall_contacts += w->domains[d].persistent_walls;
+        for (k = 0; k < w->domains[d].persistent && pressing; k++) {
             /* a polyhedron presses on a wall at up to four points: one contact */
-            const demi_kept *kept = demi_kept_of(w, d) + k;
-            c.wall_contacts -= kept->b < 0 && kept->overlap > 0 && kept->corner;
+            const demi_persistent *own = demi_persistent_of(w, d) + k;
+            c.wall_contacts -= own->b < 0 && own->overlap > 0 && own->corner;
         }
     }
     c.overlap_max = (dem_real)w->booked.overlap_max;
@@ -179,7 +179,7 @@ static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb, i
 }
 /* Returns the digest of one persistent contact, the same whichever of its bodies is a. While there
    is no neighbour list, such a contact names slots instead of indices. */
-static uint64_t demi_kept_hash(const dem_world *w, const demi_kept *c) {
+static uint64_t demi_persistent_hash(const dem_world *w, const demi_persistent *c) {
     const int pushes = c->share > 0, slots = !w->stage.list_valid;
     uint32_t who[4];
     uint64_t h = DEMI_HASH_START;
@@ -210,8 +210,8 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
                 sum += demi_pair_digest(w, w->bodies.slot[span.a[0]], w->bodies.slot[span.b[0]],
                                         demi_near_part_key(w, at), span.memory, span.stride);
         }
-        for (k = 0; k < domain->kept; k++)
-            sum += demi_kept_hash(w, demi_kept_of(w, d) + k);
+        for (k = 0; k < domain->persistent; k++)
+            sum += demi_persistent_hash(w, demi_persistent_of(w, d) + k);
     }
     for (i = 0; !w->stage.list_valid && w->filed.count && w->filed.stride == w->memory_stride &&
                 i < w->filed.rows; i++)
@@ -229,7 +229,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
    and the wall. */
 static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body, dem_vec3 *normal,
                            dem_real *mu) {
-    const demi_kept *c = demi_kept_of(w, d) + k;
+    const demi_persistent *c = demi_persistent_of(w, d) + k;
     *body = c->a;
     *normal = c->normal;
     *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
@@ -255,7 +255,7 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
     if (!demi_contacts_known(w)) return demi_list_stale(w, __func__);
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
-        const int all = w->domains[d].kept;
+        const int all = w->domains[d].persistent;
         int last = -1;                          /* the grain counted last: counted only once */
         for (k = 0; k < all; k++) {
             dem_vec3 v, flat;

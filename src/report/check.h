@@ -368,8 +368,8 @@ static void demi_check_in_walls(dem_world *w, demi_findings *f) {
     int d, k, count = 0, body = 0, wall = 0;
     if (!demi_touch(w)) return;                 /* no memory: the run will report it */
     for (d = 0; d < w->domain_count; d++)
-        for (k = 0; k < w->domains[d].kept_next; k++) {
-            const demi_kept *c = w->kept_next + w->kept_first[d] + k;
+        for (k = 0; k < w->domains[d].persistent_next; k++) {
+            const demi_persistent *c = w->persistent_next + w->persistent_first[d] + k;
             if (c->b >= 0 || !((double)c->deep > 0.01)) continue;
             count++;
             if ((double)c->deep <= worst) continue;
@@ -377,7 +377,7 @@ static void demi_check_in_walls(dem_world *w, demi_findings *f) {
             body = (int)w->bodies.slot[c->a] + 1;
             wall = w->walls[c->wall].id;
         }
-    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = w->domains[d].kept;
+    for (d = 0; d < w->domain_count; d++) w->domains[d].persistent_next = w->domains[d].persistent;
     if (count)
         demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
                   : DEM_SEVERITY_NOTE, "grains overlap walls at %d place%s, body %d wall %d by "

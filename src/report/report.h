@@ -45,9 +45,9 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
 }
 
 /* Returns the number of persistent contacts. */
-static int demi_kept_total(const dem_world *w) {
+static int demi_persistent_total(const dem_world *w) {
     int d, n = 0;
-    for (d = 0; d < w->domain_count; d++) n += w->domains[d].kept;
+    for (d = 0; d < w->domain_count; d++) n += w->domains[d].persistent;
     return n;
 }
 /* Returns in `text` how much contact history a law keeps, or "" if none. */
@@ -144,7 +144,8 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
                 w->bodies.shaped,
                 demi_rotation_rows[w->desc.rotation].name, overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
-                : "are separate", w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
+                : "are separate", w->bodies.count ? (double)demi_persistent_total(w)/w->bodies.count
+                   : 0);
     else if (w->bodies.orienting)
         demi_print(out, "           orientations of spheres are followed, because "
                    "desc.orientations is 1\n");

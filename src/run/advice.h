@@ -404,10 +404,10 @@ static void demi_press_rates(const dem_world *w, demi_press *press) {
             c.r_eff = ra*rb/sum;
             if (c.overlap > -c.range) demi_press_relax(w, span.a[0], span.b[0], -1, &c, 1, press);
         }
-        for (p = 0; p < domain->kept; p++) {
-            const demi_kept *k = demi_kept_of(w, d) + p;
+        for (p = 0; p < domain->persistent; p++) {
+            const demi_persistent *k = demi_persistent_of(w, d) + p;
             memset(&c, 0, sizeof c);
-            c.range = w->margin.reach > 0 ? demi_range(w, demi_kept_radii(w, k)) : 0;
+            c.range = w->margin.reach > 0 ? demi_range(w, demi_persistent_radii(w, k)) : 0;
             c.overlap = k->overlap;
             c.normal = k->normal;
             c.r_eff = k->r_eff;
@@ -452,15 +452,15 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
                     demi_press_add_whole(w, i, &c, f, arm, whole + press[i].whole - 1);
             }
         }
-        for (p = 0; p < domain->kept; p++) {
-            const demi_kept *k = demi_kept_of(w, d) + p;
+        for (p = 0; p < domain->persistent; p++) {
+            const demi_persistent *k = demi_persistent_of(w, d) + p;
             const int i = k->a;
             const double arm = (double)demi_radius(w, i);
             dem_real coef[DEMI_COEFS], root[2];
             demi_pressed c;
             if (!(k->overlap > 0) || k->b >= 0 || demi_shape_of(w, i) ||
                 (whole && !press[i].whole)) continue;
-            demi_kept_coefs(w, k, coef, root);
+            demi_persistent_coefs(w, k, coef, root);
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[i]);
             coef[DEMI_CT] += root[1]*DEMI_SQRT(w->bodies.mass[i]);
             c.s = demi_stiffness_of(w, coef, (double)w->bodies.mass[i], (double)k->overlap);

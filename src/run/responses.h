@@ -11,8 +11,8 @@
 static void demi_springs(dem_world *w, int d) {
     demi_pairs(w, d);
     if (w->effects.clustered) demi_members_pairs(w, d);
-    demi_kept_clear(w, d);
-    demi_kept_respond(w, d);
+    demi_persistent_clear(w, d);
+    demi_persistent_respond(w, d);
 }
 /* Springs: `info` of demi_response_row. Computes the force of one pair of the pruned neighbour list
    again, by the laws of the run and on a copy of its contact history, so that nothing changes. */
@@ -90,17 +90,17 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
    surface of the wall, whereas the arm leads to that of a, which overlaps. The arm of polyhedra
    leads to the wall if they press on it, otherwise half way across the gap. At both points the
    normal force has the same moment; that of impulses acts at the arm. */
-static dem_vec3 demi_wall_branch(const dem_world *w, const demi_kept *c) {
+static dem_vec3 demi_wall_branch(const dem_world *w, const demi_persistent *c) {
     const int pressing = demi_response_is(w, DEMI_PRESSING);
     const dem_vec3 out = pressing && c->odd ? c->more.outset : demi_v(0, 0, 0);
     dem_real past = c->overlap/c->slope - demi_dot(out, c->normal);
     if (c->corners) past = pressing && c->overlap > 0 ? 0 : c->overlap/2;
     return demi_sub(demi_sub(c->arm_a, out), demi_scale(c->normal, past));
 }
-/* Writes a persistent contact (demi_kept: any contact other than sphere on sphere) in the form that
-   users see. branch: m, from the centre of a to the contact point. */
-static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_vec3 branch,
-                           dem_contact_info *out) {
+/* Writes a persistent contact (demi_persistent: any contact other than sphere on sphere) in the
+   form that users see. branch: m, from the centre of a to the contact point. */
+static void demi_persistent_info(const dem_world *w, const demi_persistent *c, dem_vec3 branch,
+                                 dem_contact_info *out) {
     const demi_periods p = demi_periods_of(w);
     out->a = dem_body_id_get(w, c->a);
     out->b = dem_body_id_get(w, c->b);
@@ -115,12 +115,12 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_vec3 bran
 typedef struct demi_walk {
     int blind;                     /* set it to 1 only to count: then `info` and `branch` are not
                                       written */
-    int d, at, kept;               /* work group; next entry of the pruned or, with kept, of the
+    int d, at, persistent; /* work group; next entry of the pruned or, with `persistent`, of the
                                       persistent list */
     int counted;                   /* a point of the present pair of polyhedra has counted */
     /* the contact: indices of the bodies (b -1: a wall); entry of the pruned list, or persistent */
     int a, b, entry;
-    demi_kept *own;
+    demi_persistent *own;
     /* 1: it counts as one contact: the bodies touch or, with impulses, push; of the points at which
        a polyhedron touches, one counts */
     int counts;
@@ -139,16 +139,16 @@ static int demi_walk_look(const dem_world *w, demi_walk *c, int at) {
     const size_t stride = (size_t)w->near.stride, entry = (size_t)c->d*stride + (size_t)at;
     const int solved = demi_response_is(w, DEMI_MIDWAY);
     c->entry = at;
-    c->own = c->kept ? demi_kept_of(w, c->d) + at : 0;
+    c->own = c->persistent ? demi_persistent_of(w, c->d) + at : 0;
     c->a = c->own ? c->own->a : w->near.a[entry];
     c->b = c->own ? c->own->b : w->near.b[entry];
-    if (c->own ? !demi_kept_asked(w, c->own)
+    if (c->own ? !demi_persistent_asked(w, c->own)
         : !demi_contact_force(w, c->d, at, c->blind ? 0 : &c->info, &c->branch)) return 0;
     if (w->joint_count && demi_parted(w, c->a, c->b, c->own ? c->own->wall : -1)) return 0;
     if (c->blind) return 1;
     if (c->own) {
         c->branch = c->b < 0 ? demi_wall_branch(w, c->own) : c->own->arm_a;
-        demi_kept_info(w, c->own, c->branch, &c->info);
+        demi_persistent_info(w, c->own, c->branch, &c->info);
         if (c->b >= 0) c->branch = demi_sub(c->branch, c->own->arm_b);
     }
     if (!c->info.further) c->counted = 0;
@@ -159,16 +159,16 @@ static int demi_walk_look(const dem_world *w, demi_walk *c, int at) {
 }
 /* Goes to the next contact. Returns 0 if there is none. */
 static int demi_walk_next(const dem_world *w, demi_walk *c) {
-    for (; c->d < w->domain_count; c->d++, c->kept = 0, c->at = -1) {
+    for (; c->d < w->domain_count; c->d++, c->persistent = 0, c->at = -1) {
         const demi_domain *domain = &w->domains[c->d];
         if (c->at < 0) c->at = demi_near_first(domain);
-        for (; !c->kept; c->kept = 1, c->at = 0)
+        for (; !c->persistent; c->persistent = 1, c->at = 0)
             while (c->at < domain->near_end) {
                 const int at = c->at;
                 c->at = demi_near_next(domain, at);
                 if (demi_walk_look(w, c, at)) return 1;
             }
-        while (c->at < domain->kept) if (demi_walk_look(w, c, c->at++)) return 1;
+        while (c->at < domain->persistent) if (demi_walk_look(w, c, c->at++)) return 1;
     }
     return 0;
 }
@@ -181,7 +181,7 @@ static double demi_deepest(const dem_world *w, int *a, int *b, int *wall) {
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
-        const demi_kept *kept = demi_kept_of(w, d);
+        const demi_persistent *own = demi_persistent_of(w, d);
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
             const size_t at = (size_t)d*(size_t)w->near.stride + (size_t)k;
             const dem_real p = demi_near_radius(w, at, 0), q = demi_near_radius(w, at, 1);
@@ -193,13 +193,13 @@ static double demi_deepest(const dem_world *w, int *a, int *b, int *wall) {
             *a = w->near.a[at];
             *b = w->near.b[at];
         }
-        for (k = 0; k < domain->kept; k++) {
-            if (!((double)kept[k].deep > most) || (w->joint_count && demi_parted(w, kept[k].a,
-                kept[k].b, kept[k].wall))) continue;
-            most = (double)kept[k].deep;
-            *a = kept[k].a;
-            *b = kept[k].b;
-            *wall = kept[k].wall;
+        for (k = 0; k < domain->persistent; k++) {
+            if (!((double)own[k].deep > most) || (w->joint_count && demi_parted(w, own[k].a,
+                own[k].b, own[k].wall))) continue;
+            most = (double)own[k].deep;
+            *a = own[k].a;
+            *b = own[k].b;
+            *wall = own[k].wall;
         }
     }
     return most;

@@ -264,7 +264,7 @@ static void demi_walls_bear(dem_world *w) {
 static int demi_forces(dem_world *w) {
     const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
     const demi_response_row *response = &demi_responses[w->desc.response];
-    demi_kept *kept = w->kept_now;
+    demi_persistent *last = w->persistent_now;
     int d, i, k;
     if ((response->room && !response->room(w)) || (w->events.n.on && !demi_notes_room(w))) return 0;
     for (d = 0; d < w->domain_count; d++) {
@@ -275,9 +275,9 @@ static int demi_forces(dem_world *w) {
     demi_domains_do(w, demi_domain_respond);
     if (response->solve) response->solve(w);
     demi_domains_do(w, demi_domain_gather);
-    w->kept_now = w->kept_next;
-    w->kept_next = kept;
-    for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
+    w->persistent_now = w->persistent_next;
+    w->persistent_next = last;
+    for (d = 0; d < w->domain_count; d++) w->domains[d].persistent = w->domains[d].persistent_next;
     if (w->threads.now > 1) demi_domains_weigh(w);
     for (i = 0; i < w->wall_count; i++) {  /* sums in the order of groups, for any threads */
         dem_wall_loads *c = &w->walls[i].loads;
@@ -659,9 +659,9 @@ static dem_result demi_all_rebuild(dem_world *h) {
     return h->team ? h->team->rebuild(h) : demi_rebuild(h, "dem_world_step");
 }
 /* Computes all forces: 3 touch, 4 respond, 5 gather. near: 1 if pruned lists may be due. Lists of
-   contacts of spheres always have room (demi_kept_room). With other shapes the members first agree
-   that touch has succeeded in all of them, and only then compute forces, because a contact history
-   may advance only once per step. */
+   contacts of spheres always have room (demi_persistent_room). With other shapes the members first
+   agree that touch has succeeded in all of them, and only then compute forces, because a contact
+   history may advance only once per step. */
 static dem_result demi_all_forces(dem_world *h, int near) {
     dem_result result = h->team ? h->team->lend(h) : DEM_OK;
     if (result == DEM_OK && near) result = demi_all_agree(h, demi_member_near);

@@ -1,10 +1,10 @@
 /* ---------------------------------------------------------------------------------------------
    >>lists
    Wall candidates (the wall elements that a body may touch before the next rebuild), allocation of
-   all lists, and the transfer of persistent contacts (>>kept) from the old lists, by slot, to the
-   new ones. All memory is allocated before any contact moves, so a rebuild that runs out of memory
-   loses none. This part writes the wall_..., cross_..., touching_... and kept_... fields of
-   dem_world.
+   all lists, and the transfer of persistent contacts (>>persistent) from the old lists, by slot, to
+   the new ones. All memory is allocated before any contact moves, so a rebuild that runs out of
+   memory loses none. This part writes the wall_..., cross_..., touching_... and persistent_...
+   fields of dem_world.
    --------------------------------------------------------------------------------------------- */
 
 /* The gap, m, of a candidate that is only a sheet between bodies: larger than any. */
@@ -325,7 +325,7 @@ static int demi_touching_reserve(dem_world *w) {
    quarter. Slabs of spheres do not allocate in the middle of a step, so they get room for the
    largest possible number of wall contacts. Groups from `listed` on are out of use and only hold
    contacts that continue. */
-static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int *first) {
+static void demi_persistent_lay(const dem_world *w, int listed, const int *crowd, int *first) {
     int d;
     for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -340,30 +340,30 @@ static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int 
 }
 /* Allocates the persistent contacts of a new list and the walls' sums; moves nothing yet. first
    receives where those of each work group will begin. Returns 0 if memory runs out. */
-static int demi_kept_room(dem_world *w, int *first) {
+static int demi_persistent_room(dem_world *w, int *first) {
     int crowd[DEMI_DOMAINS], d, k, total = 0;
     memset(crowd, 0, sizeof crowd);
-    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].kept;
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].persistent;
     for (d = 0; d < DEMI_DOMAINS; d++)          /* upper bound per group */
-        for (k = 0; k < w->domains[d].kept; k++) {
-            const demi_kept *c = demi_kept_of(w, d) + k;
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            const demi_persistent *c = demi_persistent_of(w, d) + k;
             const int a = w->bodies.slot_index[c->a], b = c->b < 0 ? a : w->bodies.slot_index[c->b];
             if (a >= 0 && b >= 0) crowd[demi_domain_of(w, DEMI_MIN(a, b))]++;
         }
-    demi_kept_lay(w, w->domain_count, crowd, first);
+    demi_persistent_lay(w, w->domain_count, crowd, first);
     return demi_wall_sums_room(w) &&
-           DEMI_GROW(w, w->kept_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
-           DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]) &&
+           DEMI_GROW(w, w->persistent_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
+           DEMI_GROW(w, w->persistent_now, (size_t)first[DEMI_DOMAINS]) &&
            DEMI_GROW(w, w->coefs, 2*(size_t)first[DEMI_DOMAINS]);
 }
 /* Moves the contacts whose bodies and walls still exist from the old list (by slot) into the work
    groups of the new one. Body a becomes the one with the lower index. Where this exchanges a and b,
    the normal and the vectors of the history change sign, and arms and parts are exchanged. */
-static void demi_kept_move(dem_world *w, const int *first) {
+static void demi_persistent_move(dem_world *w, const int *first) {
     int d, k, e = 0, i;
     for (d = 0; d < DEMI_DOMAINS; d++) {
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept c = demi_kept_of(w, d)[k];
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent c = demi_persistent_of(w, d)[k];
             const int pair = c.b >= 0;
             c.a = w->bodies.slot_index[c.a];
             if (pair) c.b = w->bodies.slot_index[c.b];
@@ -380,25 +380,26 @@ static void demi_kept_move(dem_world *w, const int *first) {
                 for (i = 0; i < w->memory_stride; i++)
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
-            w->kept_next[e++] = c;
+            w->persistent_next[e++] = c;
         }
-        w->domains[d].kept = w->domains[d].kept_walls = 0;
+        w->domains[d].persistent = w->domains[d].persistent_walls = 0;
         w->domains[d].coefs = 0;                /* materials may have changed */
     }
-    memcpy(w->kept_first, first, sizeof w->kept_first);
+    memcpy(w->persistent_first, first, sizeof w->persistent_first);
     /* counting sort by body a; bodies.order is free after the search and holds the counts */
     if (e) memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
-    for (k = 0; k < e; k++) w->bodies.order[w->kept_next[k].a]++;
+    for (k = 0; k < e; k++) w->bodies.order[w->persistent_next[k].a]++;
     for (d = 0; d < w->domain_count; d++)
         for (i = w->domains[d].begin; e && i < w->domains[d].end; i++) {
             const int here = w->bodies.order[i];
-            w->bodies.order[i] = w->domains[d].kept;
-            w->domains[d].kept += here;
+            w->bodies.order[i] = w->domains[d].persistent;
+            w->domains[d].persistent += here;
         }
     for (k = 0; k < e; k++) {
-        const demi_kept *c = &w->kept_next[k];
+        const demi_persistent *c = &w->persistent_next[k];
         d = demi_domain_of(w, c->a);
-        demi_kept_of(w, d)[w->bodies.order[c->a]++] = *c;
-        w->domains[d].kept_walls += c->b < 0 && (c->overlap > 0 || c->row < 0);    /* as respond */
+        demi_persistent_of(w, d)[w->bodies.order[c->a]++] = *c;
+        w->domains[d].persistent_walls += c->b < 0 &&
+            (c->overlap > 0 || c->row < 0); /* as respond */
     }
 }

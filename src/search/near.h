@@ -643,7 +643,7 @@ static void demi_near_choose(dem_world *w) {
             const demi_domain *domain = &w->domains[d];
             near += domain->near_own + domain->near_end - domain->near_cross;
             near += 4*(domain->near_shaped_end - domain->near_shaped);
-            touching += domain->contacts + 3*(domain->kept - domain->kept_walls);
+            touching += domain->contacts + 3*(domain->persistent - domain->persistent_walls);
             candidates += domain->own + domain->cross;
         }
         if (w->effects.unlike) candidates *= 6;   /* support points, some gaps */

@@ -181,9 +181,9 @@ static int demi_domains_for(int count, int shaped) {
 /* Clears a work group that is out of use, because old counts must not influence later choices. Its
    number of persistent contacts stays, because these are still to be moved. */
 static void demi_domain_forget(demi_domain *o) {
-    const int kept = o->kept;
+    const int persistent = o->persistent;
     memset(o, 0, sizeof *o);
-    o->kept = kept;
+    o->persistent = persistent;
 }
 /* Fails because a body has no valid position: the run blew up earlier and was continued. */
 static dem_result demi_lost(dem_world *w, int body) {
@@ -343,8 +343,8 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     w->filed.memory = fresh;
     w->filed.stride = (int)to;
     for (d = 0; d < DEMI_DOMAINS; d++) {        /* a new slab has contacts, and no work group yet */
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent *c = demi_persistent_of(w, d) + k;
             memcpy(old, c->memory, sizeof old);
             memset(c->memory, 0, sizeof c->memory);
             demi_memory_map(was, &w->laws, own, old, c->memory);
@@ -396,14 +396,14 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_weigh(dem_world *w) {
     /* a sphere's contact with a wall costs about as much as four pairs of spheres, a pair with a
        body of another shape too, and the contact of such a body more */
-    const double kept = w->effects.unlike ? 16 : 4;
+    const double persistent = w->effects.unlike ? 16 : 4;
     double work[DEMI_DOMAINS], all = 0, before = 0;
     int d;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *o = &w->domains[d];
         const int pairs = o->near_own + o->near_end - o->near_cross;
         const int shaped = o->near_shaped_end - o->near_shaped;
-        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + kept*o->kept;
+        work[d] = 1 + o->end - o->begin + pairs + 4.0*shaped + persistent*o->persistent;
         all += work[d];
     }
     for (d = 0; d < w->domain_count; d++) {
@@ -464,8 +464,8 @@ static int demi_walls_find(dem_world *w) {
    cannot be undone. Returns 0 if memory runs out. */
 static int demi_contacts_move(dem_world *w) {
     int first[DEMI_DOMAINS + 1];
-    if (!demi_kept_room(w, first) || !demi_touching_reserve(w)) return 0;
-    demi_kept_move(w, first);
+    if (!demi_persistent_room(w, first) || !demi_touching_reserve(w)) return 0;
+    demi_persistent_move(w, first);
     return 1;
 }
 /* Makes the slots freed since the last list available again. */

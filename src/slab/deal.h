@@ -584,7 +584,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         return demi_no_memory(h, call);
     }
     for (k = 0; k < DEMI_DOMAINS; k++)          /* those of the slabs take over */
-        w->domains[k].kept = w->domains[k].contacts = 0;
+        w->domains[k].persistent = w->domains[k].contacts = 0;
     demi_filed_forget(w);
     memset(w->filed.start, 0, ((size_t)w->filed.rows + 2)*sizeof(int32_t));
     memset(*seen, 0, (size_t)s->slots + 1);

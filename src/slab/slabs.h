@@ -218,9 +218,9 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
             head.pairs++;
         }
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
-        for (k = 0; k < w->domains[d].kept && ok; k++) {
-            demi_kept c = demi_kept_of(w, d)[k];
-            demi_kept_tidy(w, &c);
+        for (k = 0; k < w->domains[d].persistent && ok; k++) {
+            demi_persistent c = demi_persistent_of(w, d)[k];
+            demi_persistent_tidy(w, &c);
             if (w->stage.list_valid) {
                 c.a = (int32_t)w->bodies.slot[c.a];
                 if (c.b >= 0) c.b = (int32_t)w->bodies.slot[c.b];
@@ -239,27 +239,27 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
 static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_head *come) {
     const int had = w->filed.count, rows = w->bodies.slot_count;
     int d, total = 0;
-    demi_kept *to;
-    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].kept;
+    demi_persistent *to;
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].persistent;
     if (!demi_carry_reserve(w, rows, had + come->pairs, come->stride) ||
         !DEMI_GROW(w, *add, (size_t)rows + 1) ||
-        !DEMI_GROW(w, w->kept_now, (size_t)(total + come->contacts)))
+        !DEMI_GROW(w, w->persistent_now, (size_t)(total + come->contacts)))
         return 0;
     if (!had) memset(w->filed.start, 0, ((size_t)rows + 2)*sizeof(int32_t));
     for (d = had ? w->filed.rows : rows; d < rows; d++) w->filed.start[d + 1] = w->filed.start[d];
     w->filed.rows = rows;
     w->filed.stride = come->stride;
-    to = w->kept_now;
+    to = w->persistent_now;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         demi_domain *o = &w->domains[d];
-        if (o->kept && d)
-            memmove(to, demi_kept_of(w, d), (size_t)o->kept*sizeof *to);
-        to += o->kept;
-        o->kept = 0;
+        if (o->persistent && d)
+            memmove(to, demi_persistent_of(w, d), (size_t)o->persistent*sizeof *to);
+        to += o->persistent;
+        o->persistent = 0;
     }
-    w->domains[0].kept = total;
+    w->domains[0].persistent = total;
     w->domain_count = DEMI_MAX(w->domain_count, 1);        /* of a world without a list so far */
-    for (d = 1; d <= DEMI_DOMAINS; d++) w->kept_first[d] = total + come->contacts;
+    for (d = 1; d <= DEMI_DOMAINS; d++) w->persistent_first[d] = total + come->contacts;
     return 1;
 }
 /* Adds `pairs` histories of a message to the filed ones, each at the end of its row. add: work
@@ -303,6 +303,7 @@ static void demi_filed_unpack(dem_world *w, int32_t *add, const demi_message_hea
     demi_pairs_unpack(w, add, from, h->pairs);
     from += (size_t)h->pairs*(3*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
     if (h->contacts)
-        demi_unpack(&from, w->kept_now + first->kept, (size_t)h->contacts*sizeof(demi_kept));
-    first->kept += h->contacts;
+        demi_unpack(&from, w->persistent_now + first->persistent,
+                    (size_t)h->contacts*sizeof(demi_persistent));
+    first->persistent += h->contacts;
 }

@@ -147,8 +147,8 @@ static void demi_surfaces_outdated(dem_world *w) {
     int d, k;
     demi_facets_outdated(w);
     for (d = 0; d < DEMI_DOMAINS; d++)
-        for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = demi_kept_of(w, d) + k;
+        for (k = 0; k < w->domains[d].persistent; k++) {
+            demi_persistent *c = demi_persistent_of(w, d) + k;
             if (c->b < 0 && demi_faceted(&w->walls[c->wall])) c->element = -1;
         }
 }
@@ -791,14 +791,14 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
 static void demi_wall_forget(dem_world *w, int wall) {
     int d, k, left;
     for (d = 0; d < DEMI_DOMAINS; d++) {
-        demi_kept *c = w->domains[d].kept ? demi_kept_of(w, d) : 0;
-        for (k = left = 0; k < w->domains[d].kept; k++) {
+        demi_persistent *c = w->domains[d].persistent ? demi_persistent_of(w, d) : 0;
+        for (k = left = 0; k < w->domains[d].persistent; k++) {
             const int next = k + 4;             /* the part of the next wall, if there is one */
             if (c[k].b >= 0 || c[k].wall != wall) c[left++] = c[k];
-            else if (next < w->domains[d].kept && demi_kept_later(&c[next]) &&
-                     !demi_kept_later(&c[k])) c[next].more.rank = 0;
+            else if (next < w->domains[d].persistent && demi_persistent_later(&c[next]) &&
+                     !demi_persistent_later(&c[k])) c[next].more.rank = 0;
         }
-        w->domains[d].kept = left;
+        w->domains[d].persistent = left;
     }
 }
 DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {

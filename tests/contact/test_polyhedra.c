@@ -634,7 +634,7 @@ int main(int argc, char **argv) {
         static const char *const name[] = {"planes", "triangles", "tube", "funnel", "profile"};
         int kind;
         for (kind = 0; kind < 5 && fine; kind++) {
-            /* how a rock's or ellipsoid's normal turns at a ball is left out where contacts are shared: >>kept */
+            /* how a rock's or ellipsoid's normal turns at a ball is left out where contacts are shared: >>persistent */
             dem_world *w = sharing_of(DEM_CLUSTER_CONTACTS_SEPARATE, 9.81, DEM_NORMAL_HERTZ, 2e-6);
             uint64_t random = 7;
             const dem_material m = scene_material(w, 2e6, 1, 0, 0);

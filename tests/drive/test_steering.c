@@ -133,7 +133,7 @@ int main(int argc, char **argv) {
             CHECK_EQ(scene_step(world, 1), DEM_OK);
             once = called;
             for (d = 0; d < world->domain_count; d++)
-                for (k = 0; k < world->domains[d].kept; k++) points += demi_kept_of(world, d)[k].b < 0;
+                for (k = 0; k < world->domains[d].persistent; k++) points += demi_persistent_of(world, d)[k].b < 0;
             CHECK(points > 20 && points < once/2);
             CHECK_EQ(lead(world, floor, motion, 0, 0.06), DEM_OK);
             CHECK_EQ(scene_step(world, 1), DEM_OK);

@@ -339,7 +339,7 @@ static int lie_tell(dem_world *w, int lie) {
     int shaped = 0, kept_wall = 0;
     if (lie >= 200) return lie_row(w, demi_number_rows + (lie - 200));
     while (!w->bodies.shape[shaped]) shaped++;
-    while (kept_wall + 1 < o->kept && w->kept_now[kept_wall].b >= 0) kept_wall++;
+    while (kept_wall + 1 < o->persistent && w->persistent_now[kept_wall].b >= 0) kept_wall++;
     switch (lie) {
     case 0: w->bodies.balance.present++; break;
     case 1: w->bodies.slot_count = huge; break;
@@ -370,8 +370,8 @@ static int lie_tell(dem_world *w, int lie) {
     case 26: o->near_shaped = 1 << 20; break;
     case 27: o->near_shaped_end = huge; break;
     case 28: o->near_shaped_cross = 0; break;
-    case 29: o->kept = huge/64; break;
-    case 30: o->kept = -7; break;
+    case 29: o->persistent = huge/64; break;
+    case 30: o->persistent = -7; break;
     case 31: o->begin = 1; break;
     case 32: o->end = 12345; break;
     case 33: w->own.a[0] = -1; break;
@@ -385,10 +385,10 @@ static int lie_tell(dem_world *w, int lie) {
     case 41: w->wall_body[0] = 999; break;
     case 42: w->wall_id[0] = w->wall_count + w->surface_count; break;
     case 43: w->wall_element[0] = 1 << 30; break;
-    case 44: w->kept_now[kept_wall].a = -1; break;
-    case 45: w->kept_now[kept_wall].wall = 7; break;
-    case 46: w->kept_now[0].a = 1 << 20; break;
-    case 47: w->kept_now[0].b = -2; break;
+    case 44: w->persistent_now[kept_wall].a = -1; break;
+    case 45: w->persistent_now[kept_wall].wall = 7; break;
+    case 46: w->persistent_now[0].a = 1 << 20; break;
+    case 47: w->persistent_now[0].b = -2; break;
     case 48: w->bodies.slot[0] = 0xffffffffu; break;
     case 49: w->bodies.slot[0] = w->bodies.slot[1]; break;
     case 50: w->bodies.slot_index[w->bodies.slot[0]] = 5; break;
@@ -418,8 +418,8 @@ static int lie_tell(dem_world *w, int lie) {
     case 104: w->filed.start[w->filed.rows] = 0; break;
     case 105: w->filed.partner[0] = 12345; break;
     case 106: w->filed.partner[0] = ~12345; break;
-    case 107: w->kept_now[kept_wall].a = w->bodies.slot_count; break;
-    case 108: w->kept_now[0].a = -1; break;
+    case 107: w->persistent_now[kept_wall].a = w->bodies.slot_count; break;
+    case 108: w->persistent_now[0].a = -1; break;
     default: return 0;
     }
     return 1;

@@ -155,7 +155,7 @@ static void stones_throw(stone_target target, int lanes, int elastic, uint64_t s
         if (lane[i].b.slot) after += stone_energy(world, lane[i].b);
         gain = after/lane[i].before - 1;
         for (k = 0; k < world->domain_count; k++) {    /* still at it: energy is in the springs */
-            const demi_kept *c = demi_kept_of(world, k);
+            const demi_persistent *c = demi_persistent_of(world, k);
             int j;
             for (j = 0; j < world->domains[k].kept; j++)
                 touching |= c[j].overlap > 0 && (world->bodies.slot[c[j].a] + 1 == lane[i].a.slot ||

@@ -1,89 +1,91 @@
 /* ---------------------------------------------------------------------------------------------
-   >>kept
+   >>persistent
    Contact detection for persistent contacts: all contacts except those of sphere on sphere (with
    springs also of spheres of clusters), which >>respond and >>members handle without such a list.
    Two such bodies may touch at several points, with normals that do not pass through their centres,
    and a body touches a wall once per nearby surface. These contacts are therefore stored one by one
-   in a list (demi_kept) and followed from step to step, so that each keeps its history.
+   in a list (demi_persistent) and followed from step to step, so that each keeps its history.
 
    The function demi_touch builds the list of the present step. It finds the contact points (part
    against part by >>meets, part against wall element by >>touch) and decides which contact of the
-   step before each one continues. >>kept-respond then continues the history, evaluates the contact
-   law and adds the forces. Within a work group the list is ordered by body a. If a list is too
-   short, demi_touch enlarges it and starts again; this loses nothing, since the old list is
+   step before each one continues. >>persistent-respond then continues the history, evaluates the
+   contact law and adds the forces. Within a work group the list is ordered by body a. If a list is
+   too short, demi_touch enlarges it and starts again; this loses nothing, since the old list is
    untouched.
    --------------------------------------------------------------------------------------------- */
 
 /* True if the law is evaluated for contact c: if the two overlap, or if the law has a range. False
    for a body on its way through a hole of a reduced sieve, whose weight is 0. */
-DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
+DEM_INLINE int demi_persistent_asked(const dem_world *w, const demi_persistent *c) {
     return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
 }
 /* Prefetches what the next step needs of the contact `by` entries after k or, with `all`, the
    fields that every contact uses. That entry may lie beyond the end of the list. */
-DEM_INLINE void demi_kept_ahead(const demi_kept *k, size_t by, int all) {
+DEM_INLINE void demi_persistent_ahead(const demi_persistent *k, size_t by, int all) {
     const uintptr_t at = (uintptr_t)k + by*sizeof *k;
     size_t e;
     DEMI_UNROLL
-    for (e = 0; e < offsetof(demi_kept, memory) + 3*sizeof(dem_real); e += 64)
+    for (e = 0; e < offsetof(demi_persistent, memory) + 3*sizeof(dem_real); e += 64)
         DEMI_FETCH((const void *)(at + e));
     if (!all) return;
     DEMI_UNROLL
-    for (e = offsetof(demi_kept, arm_b); e < offsetof(demi_kept, more); e += 64)
+    for (e = offsetof(demi_persistent, arm_b); e < offsetof(demi_persistent, more); e += 64)
         DEMI_FETCH((const void *)(at + e));
 }
 /* Clears all of a contact but its history, which respond writes, and `more`. */
-DEM_INLINE void demi_kept_blank(demi_kept *c) {
-    memset(c, 0, offsetof(demi_kept, memory));
-    memset(&c->arm_b, 0, offsetof(demi_kept, more) - offsetof(demi_kept, arm_b));
+DEM_INLINE void demi_persistent_blank(demi_persistent *c) {
+    memset(c, 0, offsetof(demi_persistent, memory));
+    memset(&c->arm_b, 0, offsetof(demi_persistent, more) - offsetof(demi_persistent, arm_b));
 }
 /* Appends a contact to the new list of work group d and returns it, cleared except for its history
    and `more`. Returns null if the list is full. */
-static demi_kept *demi_kept_new(dem_world *w, int d) {
+static demi_persistent *demi_persistent_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    demi_kept *c;
-    if (domain->kept_next >= w->kept_first[d + 1] - w->kept_first[d]) {
+    demi_persistent *c;
+    if (domain->persistent_next >= w->persistent_first[d + 1] - w->persistent_first[d]) {
         domain->overflow |= 16;
         return 0;
     }
-    c = w->kept_next + w->kept_first[d] + domain->kept_next++;
-    demi_kept_blank(c);
+    c = w->persistent_next + w->persistent_first[d] + domain->persistent_next++;
+    demi_persistent_blank(c);
     c->b = -1;
     c->share = c->slope = 1;
     return c;
 }
-DEM_INLINE dem_vec3 demi_kept_spread_of(const demi_kept *c) {
+DEM_INLINE dem_vec3 demi_persistent_spread_of(const demi_persistent *c) {
     return c->odd ? c->more.spread : demi_v(0, 0, 0);
 }
-DEM_INLINE dem_vec3 demi_kept_felt(const demi_kept *c) {
+DEM_INLINE dem_vec3 demi_persistent_felt(const demi_persistent *c) {
     return c->odd ? c->more.felt : demi_v(0, 0, 0);
 }
 /* Copies a new contact, for which no force has been computed yet. */
-static void demi_kept_copy(demi_kept *to, const demi_kept *from) {
-    memcpy(to, from, offsetof(demi_kept, more));
+static void demi_persistent_copy(demi_persistent *to, const demi_persistent *from) {
+    memcpy(to, from, offsetof(demi_persistent, more));
     if (from->odd) to->more = from->more;
 }
 
 /* Similarity t of two contacts of the same pair: 1 if their normals are within 25 degrees, 0 beyond
    45 degrees, smooth in between. *rate receives its derivative with respect to the cosine of that
    angle. */
-DEM_INLINE dem_real demi_kept_along(const demi_kept *a, const demi_kept *b, dem_real *rate) {
+DEM_INLINE dem_real demi_persistent_along(const demi_persistent *a, const demi_persistent *b,
+                                          dem_real *rate) {
     const dem_real zero = DEM_R(0.7071067811865476), one = DEM_R(0.9063077870366499);
     const dem_real t = (demi_dot(a->normal, b->normal) - zero)/(one - zero);
     *rate = t > 0 && t < 1 ? 6*t*(1 - t)/(one - zero) : 0;
     return !(t > 0) ? 0 : t < 1 ? t*t*(3 - 2*t) : 1;
 }
-/* Like demi_kept_along, but 0 for contacts of the same two parts: their weights already account for
-   overlap. */
-DEM_INLINE dem_real demi_kept_alike(const demi_kept *a, const demi_kept *b, dem_real *rate) {
+/* Like demi_persistent_along, but 0 for contacts of the same two parts: their weights already
+   account for overlap. */
+DEM_INLINE dem_real demi_persistent_alike(const demi_persistent *a, const demi_persistent *b,
+                                          dem_real *rate) {
     *rate = 0;
-    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_kept_along(a, b, rate);
+    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_persistent_along(a, b, rate);
 }
 /* Adds to `aside` the tangential force on contact c's sphere that arises because c's normal
    rotates towards or away from the normal `other` as the sphere moves: -(dE/dt)(dt/dcos)
    d(n.other)/dx. `push` is the product of the first two factors, over U'(d) of contact c. */
-DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
-    demi_kept_more *m = demi_kept_odd(c);
+DEM_INLINE void demi_persistent_aside(demi_persistent *c, dem_vec3 other, dem_real push) {
+    demi_persistent_more *m = demi_persistent_odd(c);
     const dem_real along = demi_dot(other, m->axis);
     dem_vec3 turn = demi_sub(other, demi_scale(c->normal, demi_dot(other, c->normal)));
     turn = demi_sub(turn, demi_scale(m->axis, along));
@@ -92,23 +94,25 @@ DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
 }
 /* Exponent of R* in the stiffness of a contact: 1/2 for Hertz; for a linear law 2/5, or 0 if the
    stiffness is given. */
-static dem_real demi_kept_power(const dem_world *w, const demi_kept *c) {
+static dem_real demi_persistent_power(const dem_world *w, const demi_persistent *c) {
     const int a = w->bodies.material[c->a] - 1;
     const int b = c->b < 0 ? w->walls[c->wall].material : w->bodies.material[c->b] - 1;
     if (demi_normal_is(w, DEMI_HERTZIAN)) return DEM_R(0.5);
     return w->pairs[a*DEMI_MATERIALS + b].given.stiffness > 0 ? DEM_R(0) : DEM_R(0.4);
 }
-/* Returns U'(d_i)/U'(d_k) for two contacts that overlap. q: exponent of R*, see demi_kept_power. */
-static dem_real demi_kept_steep(const demi_kept *i, const demi_kept *k, int hertz, dem_real q) {
+/* Returns U'(d_i)/U'(d_k) for two contacts that overlap. q: exponent of R*, see
+   demi_persistent_power. */
+static dem_real demi_persistent_steep(const demi_persistent *i, const demi_persistent *k, int hertz,
+                                      dem_real q) {
     const dem_real more = i->overlap/k->overlap, R = i->r_eff/k->r_eff;
     if (hertz) return more*DEMI_SQRT(more*R);
     return q > 0 && (R < 1 || R > 1) ? more*(dem_real)demi_pow((double)R, (double)q) : more;
 }
 /* Sets lift, aside and grip of the n contacts of a pair from the gradient of the merged energy E
-   (see demi_kept_share). Their shares and areas must be known. */
-static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
+   (see demi_persistent_share). Their shares and areas must be known. */
+static void demi_persistent_lift(const dem_world *w, demi_persistent *c, int n) {
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
-    const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2), q = demi_kept_power(w, c);
+    const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2), q = demi_persistent_power(w, c);
     dem_real rate;
     int i, k;
     for (k = 0; k < n; k++) {
@@ -116,15 +120,15 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         if (!(d > 0)) continue;
         c[k].lift = c[k].share*(1 + 2/p*c[k].more.rate*c[k].more.added*d*d/c[k].more.area);
         for (i = 0; i < n; i++) {
-            const dem_real t = i == k ? 0 : demi_kept_alike(&c[i], &c[k], &rate);
+            const dem_real t = i == k ? 0 : demi_persistent_alike(&c[i], &c[k], &rate);
             const dem_real e = c[i].overlap;
             dem_real far;                       /* E_i/(U'(d_k) A_i) */
             if (!(t > 0) || !(e > 0)) continue;
-            far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*
+            far = demi_persistent_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*
                 c[i].more.rate/c[i].more.area;
             c[k].lift -= far*2*t*c[k].weight*d;
             if (rate > 0 && !(w->margin.reach > 0))
-                demi_kept_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
+                demi_persistent_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
                                   own*c[k].more.rate/c[k].more.area*c[i].weight*e*e));
         }
     }
@@ -132,10 +136,10 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         dem_real lift = 0, share = 0, own = 0;
         if (!(c[k].overlap > 0)) continue;
         for (i = 0; i < n; i++) {
-            const dem_real t = i == k ? 1 : demi_kept_along(&c[i], &c[k], &rate);
+            const dem_real t = i == k ? 1 : demi_persistent_along(&c[i], &c[k], &rate);
             dem_real press;                     /* U'(d_i)/U'(d_k), times t */
             if (!(t > 0) || !(c[i].overlap > 0)) continue;
-            press = t*demi_kept_steep(&c[i], &c[k], hertz, q);
+            press = t*demi_persistent_steep(&c[i], &c[k], hertz, q);
             lift += press*c[i].lift;
             share += press*c[i].share;
             if (i == k) own = press;
@@ -144,10 +148,10 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         else c[k].grip = c[k].share;
     }
 }
-/* Returns A_i/d_i^2 = 1 + x of demi_kept_share, where x is the sum of the other terms over d_i^2.
-   If negative weights (>>facets) make x less than -1/2, the value decreases smoothly to no less
-   than 1/4. *rate receives its derivative with respect to x. */
-static dem_real demi_kept_room_of(dem_real x, dem_real *rate) {
+/* Returns A_i/d_i^2 = 1 + x of demi_persistent_share, where x is the sum of the other terms over
+   d_i^2. If negative weights (>>facets) make x less than -1/2, the value decreases smoothly to no
+   less than 1/4. *rate receives its derivative with respect to x. */
+static dem_real demi_persistent_room_of(dem_real x, dem_real *rate) {
     const dem_real below = DEM_R(0.0625)/(DEM_R(-0.25) - x);    /* x < -1/2 */
     *rate = x < DEM_R(-0.5) ? 16*below*below : DEM_R(1);
     return x < DEM_R(-0.5) ? DEM_R(0.25) + below : 1 + x;
@@ -160,7 +164,7 @@ static int demi_is_cluster(const dem_world *w, int body) {
 /* Merges contacts c[0] .. c[n - 1] of one pair, or of a body and all walls, so that together they
    act as one (DEM_CLUSTER_CONTACTS_MERGED). With overlaps d, weights w (those of >>facets,
    otherwise 1), the elastic energy U(d) of a contact and the similarity t_ij of two normals
-   (demi_kept_along),
+   (demi_persistent_along),
        A_i = d_i^2 + sum of t_ij w_j d_j^2, j not i;   s_i = w_i d_i^2/A_i;   E = sum of s_i U(d_i)
    This is a mean in which deeper contacts count more. Similar contacts together store the energy of
    one, whatever their number, and a contact that begins or ends counts nothing. Stiffness, damping
@@ -182,7 +186,7 @@ static int demi_is_cluster(const dem_world *w, int body) {
    of the contacts. Friction is scaled by `grip` = s (sum of lift U')/(sum of s U'), so that mu is
    the ratio of the two total forces. Tests: "a cluster landing on one, two or three spheres" and
    tests/surface/test_facets.c. */
-static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
+static void demi_persistent_share(const dem_world *w, demi_persistent *c, int n) {
     const int one = n > 1 && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED &&
         (demi_is_cluster(w, c->a) || (c->b >= 0 && demi_is_cluster(w, c->b)));
     int i, j;
@@ -190,62 +194,64 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         const dem_real d2 = c[i].overlap*c[i].overlap;
         dem_vec3 mean;                          /* common centre as seen from a, times A */
         dem_real A = d2, rate;
-        demi_kept_more *m;
+        demi_persistent_more *m;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
         if (c[i].odd) c[i].more.felt = c[i].more.spread;   /* polyhedra: the centre of pressure */
         if (!one || !(c[i].overlap > 0)) continue;
-        mean = demi_scale(demi_sub(c[i].arm_a, demi_kept_spread_of(&c[i])), d2);
+        mean = demi_scale(demi_sub(c[i].arm_a, demi_persistent_spread_of(&c[i])), d2);
         for (j = 0; j < n; j++) {
-            const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
+            const dem_real t = j == i ? 0 : demi_persistent_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0) || !(c[j].overlap > 0)) continue;
             A += add;
             mean = demi_add(mean, demi_scale(demi_sub(c[j].arm_a,
-                                                      demi_kept_spread_of(&c[j])), add));
+                                                      demi_persistent_spread_of(&c[j])), add));
         }
-        m = demi_kept_odd(&c[i]);
+        m = demi_persistent_odd(&c[i]);
         m->added = A/d2 - 1;
-        m->area = d2*demi_kept_room_of(m->added, &m->rate);
+        m->area = d2*demi_persistent_room_of(m->added, &m->rate);
         c[i].share = c[i].weight*d2/m->area;
         if (A > d2/2)                           /* else negative weights prevail */
             m->felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
     }
-    if (one) demi_kept_lift(w, c, n);
+    if (one) demi_persistent_lift(w, c, n);
 }
 
 /* Sets `held` of n contacts of one body with one partner or wall: the grip (weight of friction)
    that each inherits from the step before. Contacts that continue the same old one divide its grip
    in proportion to their own. Of a contact in parts all have that of all its parts. now: the old
    list of the work group. */
-static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
+static void demi_persistent_inherit(const demi_persistent *now, demi_persistent *c, int n) {
     int i, k;
     if (n == 1) { c->held = -1; return; }       /* do not load the old one yet */
     for (k = 0; k < n; k++) {
-        const dem_real own = demi_kept_whole(&c[k]);
+        const dem_real own = demi_persistent_whole(&c[k]);
         dem_real all = 0;
         if (c[k].from < 0) continue;
-        if (demi_kept_later(&c[k])) { c[k].held = c[k - c[k].corners].held; continue; }
+        if (demi_persistent_later(&c[k])) { c[k].held = c[k - c[k].corners].held; continue; }
         for (i = 0; i < n; i++)
-            if (c[i].from == c[k].from && !demi_kept_later(&c[i])) all += demi_kept_whole(&c[i]);
-        c[k].held = demi_kept_whole(&now[c[k].from]);
+            if (c[i].from == c[k].from && !demi_persistent_later(&c[i]))
+                all += demi_persistent_whole(&c[i]);
+        c[k].held = demi_persistent_whole(&now[c[k].from]);
         if (all > own) c[k].held *= own/all;
     }
 }
 /* Splits contact c of two polyhedra into the four corners of the parallelogram over which its
    pressure is spread; `spread` and `aside` are its half edges. Returns 0 if the list is full. */
-static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *old, int olds) {
-    demi_kept_more *m = demi_kept_odd(c);
+static int demi_persistent_spread(dem_world *w, int d, demi_persistent *c,
+                                  const demi_persistent *old, int olds) {
+    demi_persistent_more *m = demi_persistent_odd(c);
     const dem_vec3 one = m->spread, two = m->aside;
     dem_vec3 to = one;
     int k;
     m->aside = demi_v(0, 0, 0);
     c->share /= (dem_real)c->corners;
     for (k = c->corners - 1; k >= 0; k--) {
-        demi_kept *at = k ? demi_kept_new(w, d) : c;
+        demi_persistent *at = k ? demi_persistent_new(w, d) : c;
         if (!at) return 0;
-        if (k) demi_kept_copy(at, c);
+        if (k) demi_persistent_copy(at, c);
         at->corner = k;
-        if (k) at->from = demi_kept_same(w, d, old, olds, at);
+        if (k) at->from = demi_persistent_same(w, d, old, olds, at);
         to = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
                       demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
         at->more.spread = to;
@@ -256,15 +262,15 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
     }
     c->arm_a = demi_add(c->arm_a, to);
     c->arm_b = demi_add(c->arm_b, to);
-    demi_kept_turn(w, d, c);
+    demi_persistent_turn(w, d, c);
     return 1;
 }
 /* Splits contact c of two polyhedra into the points of its contact manifold `spots`. On entry
    c->arm_a and c->arm_b lead to the centre of the first polyhedron. Returns 0 if the list is
    full. */
-static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *p,
-                            const demi_part *q, const demi_spots *spots, const demi_kept *old,
-                            int olds) {
+static int demi_persistent_points(dem_world *w, int d, demi_persistent *c, const demi_part *p,
+                                  const demi_part *q, const demi_spots *spots,
+                                  const demi_persistent *old, int olds) {
     const dem_vec3 base_a = c->arm_a, base_b = c->arm_b;
     const dem_real thin = DEMI_MIN(demi_part_thin(p), demi_part_thin(q));
     const int pressing = demi_response_is(w, DEMI_PRESSING);
@@ -273,67 +279,68 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
     c->corners = spots->count;
     for (k = 0; k < spots->count; k++) {
         const dem_vec3 x = demi_d3_real(spots->x[k]);
-        demi_kept *at = k ? demi_kept_new(w, d) : c;
+        demi_persistent *at = k ? demi_persistent_new(w, d) : c;
         if (!at) return 0;
-        if (k) demi_kept_copy(at, c);
+        if (k) demi_persistent_copy(at, c);
         at->corner = k;
         at->arm_a = demi_add(base_a, x);
         at->arm_b = demi_add(base_b, x);
         at->overlap = (dem_real)-spots->gap[k];
         at->deep = at->overlap/thin;
-        if (pressing) at->from = demi_kept_same(w, d, old, olds, at);
+        if (pressing) at->from = demi_persistent_same(w, d, old, olds, at);
     }
-    if (!pressing) demi_kept_nearest(w, d, old, olds, c, spots->count);
+    if (!pressing) demi_persistent_nearest(w, d, old, olds, c, spots->count);
     return 1;
 }
-/* Appends a contact of part i of body a with part j of body b. send: as in demi_kept. Returns null
-   if the list is full. */
-DEM_INLINE demi_kept *demi_kept_begin(dem_world *w, int d, int a, int b, int send, int i, int j,
-                                      const demi_kept *old, int olds) {
-    demi_kept *c = demi_kept_new(w, d);
+/* Appends a contact of part i of body a with part j of body b. send: as in demi_persistent. Returns
+   null if the list is full. */
+DEM_INLINE demi_persistent *demi_persistent_begin(dem_world *w, int d, int a, int b, int send,
+                                                  int i, int j, const demi_persistent *old,
+                                                  int olds) {
+    demi_persistent *c = demi_persistent_new(w, d);
     if (!c) return 0;
     c->a = a; c->b = b; c->part_a = i; c->part_b = j;
     c->wall = c->element = -1;
     c->send = send;
-    c->from = demi_kept_same(w, d, old, olds, c);
+    c->from = demi_persistent_same(w, d, old, olds, c);
     return c;
 }
 /* Appends the contact of two parts p and q if they touch. gap: from the centre of p to that of q,
    m. Returns 0 if the list is full. */
-static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const demi_part *p,
-                           const demi_part *q, int i, int j, dem_vec3 gap, const demi_kept *old,
-                           int olds) {
-    const demi_kept *now = demi_kept_of(w, d);
-    demi_kept *c = demi_kept_begin(w, d, a, b, send, i, j, old, olds);
+static int demi_persistent_parts(dem_world *w, int d, int a, int b, int send, const demi_part *p,
+                                 const demi_part *q, int i, int j, dem_vec3 gap,
+                                 const demi_persistent *old, int olds) {
+    const demi_persistent *now = demi_persistent_of(w, d);
+    demi_persistent *c = demi_persistent_begin(w, d, a, b, send, i, j, old, olds);
     demi_spots spots;
     if (!c) return 0;
     spots.count = 0;
     if (c->from >= 0) c->normal = now[c->from].normal;      /* initial guess */
     if (!demi_meet_of(p->kind, q->kind)(w, p, q, gap, c->from < 0 ? 0 : now[c->from].lambda, c,
                                         &spots))
-        w->domains[d].kept_next--;
+        w->domains[d].persistent_next--;
     else if (w->flush.count && demi_flush_within(w, c, p, q, gap, &spots))
-        w->domains[d].kept_next--;
-    else if (spots.count ? !demi_kept_points(w, d, c, p, q, &spots, old, olds)
-             : c->corners && !demi_kept_spread(w, d, c, old, olds)) return 0;
+        w->domains[d].persistent_next--;
+    else if (spots.count ? !demi_persistent_points(w, d, c, p, q, &spots, old, olds)
+             : c->corners && !demi_persistent_spread(w, d, c, old, olds)) return 0;
     else if (w->flush.count && !spots.count) demi_flush_follow(w, c, p, q);
     return 1;
 }
 /* Appends the contact of two spheres of neighbouring bodies if they touch; most do not. one, other:
    their rows (centre from the body's, radius, m); to: from sphere i's centre to the centre of body
    b, m. Returns 0 if the list is full. */
-DEM_INLINE int demi_kept_two(dem_world *w, int d, int a, int b, int send, int i, int j,
-                             const dem_real *one, const dem_real *other, dem_vec3 to,
-                             const demi_kept *old, int olds) {
+DEM_INLINE int demi_persistent_two(dem_world *w, int d, int a, int b, int send, int i, int j,
+                                   const dem_real *one, const dem_real *other, dem_vec3 to,
+                                   const demi_persistent *old, int olds) {
     const dem_vec3 gap = demi_add(to, demi_at(other));
     const dem_real radii = one[3] + other[3];
     const dem_real near_by = w->margin.reach > 0 ? radii + demi_range(w, radii) : radii;
-    demi_kept *c;
+    demi_persistent *c;
     if (!(demi_dot(gap, gap) < near_by*near_by)) return 1;
-    c = demi_kept_begin(w, d, a, b, send, i, j, old, olds);
+    c = demi_persistent_begin(w, d, a, b, send, i, j, old, olds);
     if (!c) return 0;
     if (!demi_balls_meet(w, demi_at(one), one[3], demi_at(other), other[3], gap, c))
-        w->domains[d].kept_next--;
+        w->domains[d].persistent_next--;
     return 1;
 }
 /* Lists the pairs of spheres of bodies a and b that may touch while the pruned neighbour list is
@@ -361,8 +368,9 @@ static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const 
 /* Appends all contacts of a candidate pair of spheres and clusters, entry `at` of the pruned
    neighbour list. r: from a's centre to b's, m; old: the contacts of body a in the step before.
    Returns 0 if the list is full. */
-static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, const dem_real *x,
-                           int na, const dem_real *y, int nb, const demi_kept *old, int olds) {
+static int demi_persistent_balls(dem_world *w, int d, int at, int send, dem_vec3 r,
+                                 const dem_real *x, int na, const dem_real *y, int nb,
+                                 const demi_persistent *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
     const dem_real far_b = demi_radius(w, b) + (dem_real)w->margin.reach;
     demi_near_balls *some = w->near.balls + at;
@@ -371,8 +379,8 @@ static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, co
     if (some->count != DEMI_BALLS_ALL) {
         for (k = 0; k < some->count; k++) {
             const dem_real *one = x + 4*(i = some->a[k]), *other = y + 4*(j = some->b[k]);
-            if (!demi_kept_two(w, d, a, b, send, i, j, one, other, demi_sub(r, demi_at(one)), old,
-                               olds)) return 0;
+            if (!demi_persistent_two(w, d, a, b, send, i, j, one, other, demi_sub(r, demi_at(one)),
+                                     old, olds)) return 0;
         }
         return 1;
     }
@@ -381,13 +389,14 @@ static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, co
         const dem_real all = x[4*i + 3] + far_b;
         if (na > 1 && !(demi_dot(to, to) < all*all)) continue;
         for (j = 0; j < nb; j++)
-            if (!demi_kept_two(w, d, a, b, send, i, j, x + 4*i, y + 4*j, to, old, olds)) return 0;
+            if (!demi_persistent_two(w, d, a, b, send, i, j, x + 4*i, y + 4*j, to, old, olds))
+                return 0;
     }
     return 1;
 }
 /* The same for bodies of any parts. */
-static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
-                         const demi_kept *old, int olds) {
+static int demi_persistent_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
+                               const demi_persistent *old, int olds) {
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
     const dem_real rb = demi_radius(w, b) + (dem_real)w->margin.reach;
     int i, j;
@@ -400,27 +409,28 @@ static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r
             const dem_vec3 gap = demi_add(to, q.centre);
             const dem_real near_by = p.radius + q.radius + demi_range(w, p.radius + q.radius);
             if (demi_dot(gap, gap) < near_by*near_by &&
-                !demi_kept_parts(w, d, a, b, send, &p, &q, i, j, gap, old, olds)) return 0;
+                !demi_persistent_parts(w, d, a, b, send, &p, &q, i, j, gap, old, olds)) return 0;
         }
     }
     return 1;
 }
 /* Appends the contact of two ellipsoids, or of an ellipsoid and a sphere, if they touch: row k of a
    tile. It is the only contact of its pair, so all its weights are 1. */
-static void demi_kept_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, int k, int send) {
+static void demi_persistent_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, int k,
+                                       int send) {
     const int at = d*w->near.stride + t->entry[k];
     demi_part p, q;
-    demi_kept *c;
+    demi_persistent *c;
     if (!demi_ellipsoids_meet(t, k)) return;
-    c = demi_kept_new(w, d);
+    c = demi_persistent_new(w, d);
     if (!c) return;
-    demi_kept_ahead(c, 2, 1);
+    demi_persistent_ahead(c, 2, 1);
     c->a = w->near.a[at]; c->b = w->near.b[at];
     c->wall = c->element = -1;
     c->send = send;
     c->from = t->from[k];
     c->weight = c->lift = c->grip = 1;
-    c->held = -1;                               /* as demi_kept_past for one contact */
+    c->held = -1;                               /* as demi_persistent_past for one contact */
     if (w->desc.ellipsoid_overlap != DEM_OVERLAP_CONSERVATIVE) {
         p = demi_part_now(w, c->a, 0);
         q = demi_part_now(w, c->b, 0);
@@ -432,34 +442,35 @@ static void demi_kept_ellipsoids(dem_world *w, int d, demi_ellipsoid_tile *t, in
                         demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at)));
 }
 /* Finds the contacts of one candidate pair, then merges them and passes grip on. */
-static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
-                                      int olds) {
-    const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
+static DEMI_APART void demi_persistent_pair(dem_world *w, int d, int at, int send,
+                                            const demi_persistent *old, int olds) {
+    const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].persistent_next;
     const dem_vec3 r = demi_near_level(w, (size_t)at, demi_near_bodies_way(w, (size_t)at));
     const dem_real radii = demi_radius(w, a) + demi_radius(w, b);
     const dem_real far = radii + (dem_real)w->margin.reach;
-    const demi_kept *now = demi_kept_of(w, d);
-    demi_kept *from = w->kept_next + w->kept_first[d] + first;
+    const demi_persistent *now = demi_persistent_of(w, d);
+    demi_persistent *from = w->persistent_next + w->persistent_first[d] + first;
     const dem_real *x, *y;
     int na, nb, count;
     if (!(demi_dot(r, r) < far*far)) return;
     x = demi_balls_of(w, a, &na);
     y = demi_balls_of(w, b, &nb);
-    if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
-          : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
-    count = w->domains[d].kept_next - first;
+    if (!(x && y ? demi_persistent_balls(w, d, at, send, r, x, na, y, nb, old, olds)
+          : demi_persistent_any(w, d, a, b, send, r, old, olds))) return;
+    count = w->domains[d].persistent_next - first;
     if (!count) return;
-    demi_kept_share(w, from, count);
-    demi_kept_inherit(now, from, count);
+    demi_persistent_share(w, from, count);
+    demi_persistent_inherit(now, from, count);
 }
 /* Finds the contacts of entry p of the pruned list of work group d: of ellipsoids from tile t,
    which is filled again, before `end`, when it is used up; those of others individually. */
-DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send,
-                                demi_ellipsoid_tile *t, const demi_kept *old, int olds) {
+DEM_INLINE void demi_persistent_entry(dem_world *w, int d, int p, int end, int send,
+                                      demi_ellipsoid_tile *t, const demi_persistent *old,
+                                      int olds) {
     if (p >= t->end) demi_ellipsoids_find(w, d, p, end, t);
     if (t->next < t->count && t->entry[t->next] == p)
-        demi_kept_ellipsoids(w, d, t, t->next++, send);
-    else demi_kept_pair(w, d, d*w->near.stride + p, send, old, olds);
+        demi_persistent_ellipsoids(w, d, t, t->next++, send);
+    else demi_persistent_pair(w, d, d*w->near.stride + p, send, old, olds);
 }
 
 /* Handles a body whose centre has passed through an open surface, which repels on both sides: from
@@ -468,14 +479,14 @@ DEM_INLINE void demi_kept_entry(dem_world *w, int d, int p, int end, int send,
    one: 2 - deep. This does not apply at the end of a surface, which repels a polyhedron on both
    sides for a while. old: contacts of the body in the step before; fresh: all its new ones with
    this wall. */
-static void demi_kept_through(const dem_world *w, const demi_kept *old, int olds,
-                              const demi_kept *fresh, int count, demi_kept *c) {
+static void demi_persistent_through(const dem_world *w, const demi_persistent *old, int olds,
+                                    const demi_persistent *fresh, int count, demi_persistent *c) {
     int e, i;
     for (e = 0; e < olds && c->corners; e++)
-        if (old[e].b < 0 && demi_kept_one(w, &old[e], c) && old[e].part_a == c->part_a &&
+        if (old[e].b < 0 && demi_persistent_one(w, &old[e], c) && old[e].part_a == c->part_a &&
             demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
-        if (old[e].b >= 0 || !demi_kept_one(w, &old[e], c) || old[e].part_a != c->part_a ||
+        if (old[e].b >= 0 || !demi_persistent_one(w, &old[e], c) || old[e].part_a != c->part_a ||
             old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5)) continue;
         for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
         if (i == count) c->deep = 2 - c->deep;
@@ -497,18 +508,18 @@ static int demi_place_near(const dem_world *w, const demi_wall *wall, const demi
 /* Appends the contacts of part k of a body with one wall, then decides which old one each
    continues. shaped: 0 for a sphere, for which the compiler makes a specialised copy; the weights
    of its contact points remain those that were found. */
-DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
-                                  const demi_part *p, const demi_kept *old, int olds) {
+DEM_INLINE void demi_persistent_on_wall(dem_world *w, demi_view *v, int body, int shaped, int k,
+                                        const demi_part *p, const demi_persistent *old, int olds) {
     const demi_wall *wall = v->wall;
     const int d = v->d;
     const dem_vec3 at = v->at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
     demi_touching *found = w->touching + w->domains[d].touching_first;
     const int places = demi_touches[wall->kind][p->kind](v, p, found);
-    demi_kept *fresh = 0, *c;
+    demi_persistent *fresh = 0, *c;
     int i, e, count = 0;
     for (i = 0; i < places; i++) {
         if (shaped && w->margin.reach > 0 && !demi_place_near(w, wall, p, at, &found[i])) continue;
-        c = demi_kept_new(w, d);
+        c = demi_persistent_new(w, d);
         if (!c) return;
         if (!count++) fresh = c;
         c->a = body;
@@ -525,28 +536,28 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, demi_view *v, int body, int shap
                                DEMI_MAX(p->radius - c->overlap, p->radius/10),
                                demi_add(found[i].point, c->shift), c);
         } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
-        /* the point of the wall, until demi_kept_cover; points of gaps are half way */
+        /* the point of the wall, until demi_persistent_cover; points of gaps are half way */
         if (v->several)
             c->arm_b = demi_sub(found[i].point,
                                 demi_scale(c->normal, c->corners ? c->overlap/2 : 0));
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     if (shaped && count && fresh->corners && !demi_response_is(w, DEMI_PRESSING))
-        demi_kept_nearest(w, d, old, olds, fresh, count);
+        demi_persistent_nearest(w, d, old, olds, fresh, count);
     else
         for (i = 0, c = fresh; i < count; i++, c++)
-            c->from = !shaped || !c->corners ? demi_kept_same(w, d, old, olds, c)
-                : demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_TURNED);
+            c->from = !shaped || !c->corners ? demi_persistent_same(w, d, old, olds, c)
+                : demi_persistent_best(w, d, old, olds, fresh, count, c, DEMI_FIT_TURNED);
     for (i = 0, c = fresh; i < count; i++, c++) {
-        if (demi_kept_later(c)) c->from = demi_kept_part(w, d, &old[olds], c);
+        if (demi_persistent_later(c)) c->from = demi_persistent_part(w, d, &old[olds], c);
         else if (c->from < 0 && olds)
-            c->from = demi_kept_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
-        if (c->corner == 3) demi_kept_turn(w, d, c - 3);
-        if (c->deep > DEM_R(0.1) && olds) demi_kept_through(w, old, olds, fresh, count, c);
+            c->from = demi_persistent_best(w, d, old, olds, fresh, count, c, DEMI_FIT_SLID);
+        if (c->corner == 3) demi_persistent_turn(w, d, c - 3);
+        if (c->deep > DEM_R(0.1) && olds) demi_persistent_through(w, old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* stays in the hole until through */
             if (old[e].b < 0 && old[e].wall == c->wall && old[e].part_a == k && c->overlap > 0 &&
-                !demi_kept_asked(w, &old[e])) c->weight = c->lift = c->grip = c->share = 0;
+                !demi_persistent_asked(w, &old[e])) c->weight = c->lift = c->grip = c->share = 0;
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
@@ -561,8 +572,8 @@ DEM_INLINE int demi_ball_clear(const demi_view *v, dem_vec3 at, dem_real r) {
 }
 /* Finds all contacts of one body with one surface: candidates first .. last - 1 of work group d.
    several: 1 if other surfaces are near the body. */
-static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, int several,
-                                      const demi_kept *old, int olds) {
+static DEMI_APART void demi_persistent_wall(dem_world *w, int d, int first, int last, int several,
+                                            const demi_persistent *old, int olds) {
     const int body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
     demi_view v = demi_view_of(w, d, first, last);
@@ -572,7 +583,7 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
     if ((v.late = demi_walls_late(w, body))) v.gone = DEM_R(1e30);     /* gaps: half a step ahead */
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
-        demi_kept_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
+        demi_persistent_on_wall(w, &v, body, 0, 0, &sphere, old, olds);
         return;
     }
     balls = demi_balls_of(w, body, &count);
@@ -581,24 +592,26 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last, 
         if (balls && demi_ball_clear(&v, demi_add(demi_at(w->bodies.pos + 4*body),
                                                   demi_at(balls + 4*k)), balls[4*k + 3])) continue;
         p = demi_part_now(w, body, k);
-        demi_kept_on_wall(w, &v, body, 1, k, &p, old, olds);
+        demi_persistent_on_wall(w, &v, body, 1, k, &p, old, olds);
     }
 }
 /* True if two contacts of one body with walls belong to the same surface: same part, and walls at
    rest relative to each other. */
-DEM_INLINE int demi_kept_beside(const dem_world *w, const demi_kept *a, const demi_kept *b) {
+DEM_INLINE int demi_persistent_beside(const dem_world *w, const demi_persistent *a,
+                                      const demi_persistent *b) {
     return a->part_a == b->part_a && w->walls[a->wall].group == w->walls[b->wall].group;
 }
 /* Returns the (not normalised) weight with which contact c takes part in the negative weight of
    contact e: the similarity of their normals over the squared distance of their points. It is 0 if
    the two do not belong to the same surface, and dominates if their points coincide. */
-static double demi_kept_nearness(const dem_world *w, const demi_kept *e, const demi_kept *c) {
+static double demi_persistent_nearness(const dem_world *w, const demi_persistent *e,
+                                       const demi_persistent *c) {
     const dem_vec3 d = demi_add(demi_sub(c->arm_a, e->arm_a),
         demi_sub(demi_scale(e->normal, e->overlap), demi_scale(c->normal, c->overlap)));
     const double hair = 1e-9*(double)e->r_eff;
     dem_real rate;
-    if (!(c->weight > 0) || !(c->overlap > 0) || !demi_kept_beside(w, e, c)) return 0;
-    return (double)demi_kept_along(e, c, &rate)/((double)demi_dot(d, d) + hair*hair);
+    if (!(c->weight > 0) || !(c->overlap > 0) || !demi_persistent_beside(w, e, c)) return 0;
+    return (double)demi_persistent_along(e, c, &rate)/((double)demi_dot(d, d) + hair*hair);
 }
 /* Removes the friction of contacts with negative weight (where rows of a sieve cross, or at the
    edge of a valley of facets): a sliding contact with negative friction would supply energy. The
@@ -606,17 +619,19 @@ static double demi_kept_nearness(const dem_world *w, const demi_kept *e, const d
    instead, mostly that of the nearest. A contact that is cancelled entirely has no friction. Two
    contacts that begin as one together hold what the one held. mu remains the ratio of the two total
    forces. */
-static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
+static void demi_persistent_crossed(const dem_world *w, demi_persistent *c, int n) {
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
     int i, k;
     for (k = 0; k < n; k++) {
         double all = 0;
         if (!(c[k].weight < 0)) continue;
         c[k].grip = 0;
-        for (i = 0; i < n && c[k].overlap > 0; i++) all += demi_kept_nearness(w, &c[k], &c[i]);
+        for (i = 0; i < n && c[k].overlap > 0; i++)
+            all += demi_persistent_nearness(w, &c[k], &c[i]);
         for (i = 0; i < n && all > 0; i++) {
-            const dem_real part = (dem_real)(demi_kept_nearness(w, &c[k], &c[i])/all);
-            if (part > 0) c[i].held += part*c[k].weight*demi_kept_steep(&c[k], &c[i], hertz, 0);
+            const dem_real part = (dem_real)(demi_persistent_nearness(w, &c[k], &c[i])/all);
+            if (part > 0)
+                c[i].held += part*c[k].weight*demi_persistent_steep(&c[k], &c[i], hertz, 0);
         }
     }
     for (k = 0; k < n; k++) {                   /* held: the reduction, until it is applied */
@@ -626,35 +641,36 @@ static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
 }
 /* If a contact with a surface ends at depth, because another one has replaced it, its springs pass
    to the contact with the most similar normal: that contact's `send` names the one that ended. */
-static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int olds,
-                            demi_kept *c, int n) {
-    const int first = (int)(old - demi_kept_of(w, d));
+static void demi_persistent_ended(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                  demi_persistent *c, int n) {
+    const int first = (int)(old - demi_persistent_of(w, d));
     int e, i;
     for (e = 0; e < olds; e++) {
         const demi_wall *wall = old[e].b >= 0 ? 0
-            : demi_surface_of(w, demi_kept_surface(w, &old[e]));
+            : demi_surface_of(w, demi_persistent_surface(w, &old[e]));
         dem_real nearest = DEM_R(0.95);
-        demi_kept *heir = 0;
-        if (!wall || !(old[e].grip > 0) || demi_kept_later(&old[e]) ||
+        demi_persistent *heir = 0;
+        if (!wall || !(old[e].grip > 0) || demi_persistent_later(&old[e]) ||
             !(demi_faceted(wall) || demi_wall_is(wall, DEMI_CROSSED))) continue;
         for (i = 0; i < n && c[i].from != first + e; i++) {
             const dem_real along = demi_dot(old[e].normal, c[i].normal);
-            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 || demi_kept_later(&c[i]) ||
+            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 ||
+                demi_persistent_later(&c[i]) ||
                 c[i].corner != old[e].corner ||
-                !(2*old[e].overlap > c[i].overlap) || !demi_kept_beside(w, &old[e], &c[i]))
+                !(2*old[e].overlap > c[i].overlap) || !demi_persistent_beside(w, &old[e], &c[i]))
                 continue;
             nearest = along;
             heir = &c[i];
         }
         if (i == n && heir && !heir->send) heir->send = 1 + first + e;
     }
-    for (i = 0; i < n; i++) if (demi_kept_later(&c[i])) c[i].send = c[i - c[i].corners].send;
+    for (i = 0; i < n; i++) if (demi_persistent_later(&c[i])) c[i].send = c[i - c[i].corners].send;
 }
 /* True if the point of c on its wall lies on a surface, such as another one. first, last: the
    candidates of the body in work group d; level: only facets across the normal count. Planes,
    cylinders and surfaces of facets can cover others. */
-static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, const demi_kept *c,
-                             int surface, int level) {
+static int demi_persistent_lies_on(const dem_world *w, int d, int first, int last,
+                                   const demi_persistent *c, int surface, int level) {
     const demi_wall *wall = demi_surface_of(w, surface);
     const dem_vec3 n = demi_unrotate(wall->pose.rotation, c->normal);
     const dem_real close = DEM_R(1e-5)*c->r_eff + wall->plane_slack;
@@ -674,8 +690,8 @@ static int demi_kept_lies_on(const dem_world *w, int d, int first, int last, con
 }
 /* True if contact c is by the plane of its facet, so that it stays where surfaces abut: only points
    of polyhedra, of which a facet may have several. */
-static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
-    const demi_wall *wall = demi_surface_of(w, demi_kept_surface(w, c));
+static int demi_persistent_flush(const dem_world *w, const demi_persistent *c) {
+    const demi_wall *wall = demi_surface_of(w, demi_persistent_surface(w, c));
     const int32_t element = wall->scale ? c->element%wall->number_count : c->element;
     return c->corners && demi_faceted(wall) && element < wall->element_count &&
         DEMI_ABS(demi_dot(demi_at(wall->planes + 4*element),
@@ -683,7 +699,7 @@ static int demi_kept_flush(const dem_world *w, const demi_kept *c) {
 }
 /* True if several surfaces are near a body and one of them may have edges. wall: the surfaces of
    its candidates. */
-DEM_INLINE int demi_kept_several(const dem_world *w, const int32_t *wall, int count) {
+DEM_INLINE int demi_persistent_several(const dem_world *w, const int32_t *wall, int count) {
     int i, edges = 0;
     for (i = 0; i < count && wall[0] != wall[count - 1]; i++)
         edges |= !demi_wall_is(demi_surface_of(w, wall[i]), DEMI_SMOOTH);
@@ -694,23 +710,23 @@ DEM_INLINE int demi_kept_several(const dem_world *w, const int32_t *wall, int co
    surface covers the edge. Of contacts that lie on each other's surface, one on a face covers one
    on an edge; of two on faces or on edges the first remains. walled: the first contact of the body
    with walls. */
-static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled) {
-    demi_kept *c = w->kept_next + w->kept_first[d];
-    const int all = w->domains[d].kept_next, pressing = demi_response_is(w, DEMI_PRESSING);
+static void demi_persistent_cover(dem_world *w, int d, int first, int last, int walled) {
+    demi_persistent *c = w->persistent_next + w->persistent_first[d];
+    const int all = w->domains[d].persistent_next, pressing = demi_response_is(w, DEMI_PRESSING);
     int i, k, left = walled;
     for (i = walled; i < all; i++) {
-        const int own = demi_kept_surface(w, &c[i]);
+        const int own = demi_persistent_surface(w, &c[i]);
         int covered = 0, level;
-        if (demi_kept_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
+        if (demi_persistent_flush(w, &c[i]) || (pressing && c[i].corners)) continue;
         for (k = walled; k < all && !covered; k++) {
-            const int other = demi_kept_surface(w, &c[k]);
+            const int other = demi_persistent_surface(w, &c[k]);
             if (other == own || c[k].part_a != c[i].part_a || c[k].a < 0) continue;
-            if (!demi_kept_lies_on(w, d, first, last, &c[i], other, 0)) continue;
-            covered = demi_kept_flush(w, &c[k]) ||
-                !demi_kept_lies_on(w, d, first, last, &c[k], own, 0);
+            if (!demi_persistent_lies_on(w, d, first, last, &c[i], other, 0)) continue;
+            covered = demi_persistent_flush(w, &c[k]) ||
+                !demi_persistent_lies_on(w, d, first, last, &c[k], own, 0);
             if (covered) continue;
-            level = demi_kept_lies_on(w, d, first, last, &c[i], own, 1);
-            covered = level == demi_kept_lies_on(w, d, first, last, &c[k], other, 1)
+            level = demi_persistent_lies_on(w, d, first, last, &c[i], own, 1);
+            covered = level == demi_persistent_lies_on(w, d, first, last, &c[k], other, 1)
                 ? k < i : !level;
         }
         if (covered) c[i].a = -1;               /* it leaves the list below */
@@ -718,27 +734,28 @@ static void demi_kept_cover(dem_world *w, int d, int first, int last, int walled
     for (i = walled; i < all; i++) {
         if (c[i].a < 0) continue;
         c[i].arm_b = demi_v(0, 0, 0);
-        if (i > left) demi_kept_copy(&c[left], &c[i]);
+        if (i > left) demi_persistent_copy(&c[left], &c[i]);
         left++;
     }
-    w->domains[d].kept_next = left;
+    w->domains[d].persistent_next = left;
 }
 /* Completes the contacts of one body with walls once all are found: the weights of friction, and
    which springs of the step before each inherits. */
-static void demi_kept_settle(const dem_world *w, int d, const demi_kept *old, int olds,
-                             demi_kept *c, int n) {
-    const demi_kept *now = demi_kept_of(w, d);
+static void demi_persistent_settle(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                   demi_persistent *c, int n) {
+    const demi_persistent *now = demi_persistent_of(w, d);
     if (n == 1 && olds <= 1) { c->held = -1; return; }      /* do not load the old one yet */
-    demi_kept_crossed(w, c, n);
-    demi_kept_ended(w, d, old, olds, c, n);
-    demi_kept_inherit(now, c, n);
+    demi_persistent_crossed(w, c, n);
+    demi_persistent_ended(w, d, old, olds, c, n);
+    demi_persistent_inherit(now, c, n);
 }
 
 /* Finds all persistent contacts of one work group in the order of body a. Each body has its pairs
    within the group first, then its pairs with other groups, then its walls. */
-static void demi_domain_kept_touch(dem_world *w, int d) {
+static void demi_domain_persistent_touch(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_kept *old = demi_kept_of(w, d), *end = old + domain->kept, *old_end;
+    const demi_persistent *old = demi_persistent_of(w, d), *old_end;
+    const demi_persistent *end = old + domain->persistent;
     const int32_t *near_a = w->near.a + d*w->near.stride;
     const int32_t *body = w->wall_body + d*w->wall_stride, *wall = w->wall_id + d*w->wall_stride;
     const dem_real *gap = w->wall_gap + d*w->wall_stride;
@@ -752,7 +769,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     own.end = cross.end = ellipsoids ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
     own.old = own.after = cross.old = cross.after = old;
-    domain->kept_next = domain->kept_same = 0;
+    domain->persistent_next = domain->persistent_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered || (w->bodies.shaped && demi_response_is(w, DEMI_LAWS)))
         demi_balls_place(w, domain->begin, domain->end);
@@ -767,44 +784,45 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* hardware does not prefetch this */
         if (k + DEMI_LANES < walls) DEMI_FETCH(w->bodies.pos + 4*body[k + DEMI_LANES]);
         for (; p < own_end && near_a[p] == a; p++)
-            demi_kept_entry(w, d, p, own_end, 0, &own, old, (int)(old_end - old));
+            demi_persistent_entry(w, d, p, own_end, 0, &own, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
-            demi_kept_entry(w, d, q, cross_end, 1 + w->near.k[base + q], &cross, old,
-                            (int)(old_end - old));
-        walled = domain->kept_next;
+            demi_persistent_entry(w, d, q, cross_end, 1 + w->near.k[base + q], &cross, old,
+                                  (int)(old_end - old));
+        walled = domain->persistent_next;
         for (from = end_k = k; end_k < walls && body[end_k] == a;) end_k++;
-        several = from < end_k && demi_kept_several(w, wall + from, end_k - from);
+        several = from < end_k && demi_persistent_several(w, wall + from, end_k - from);
         for (; k < end_k; k = last) {
             last = k + 1;
             if (gap[k] > gone) continue;
             while (last < end_k && wall[last] == wall[k]) last++;
-            demi_kept_wall(w, d, k, last, several, old, (int)(old_end - old));
+            demi_persistent_wall(w, d, k, last, several, old, (int)(old_end - old));
         }
-        if (several && domain->kept_next > walled) demi_kept_cover(w, d, from, end_k, walled);
-        if (domain->kept_next > walled) {
-            demi_kept *c = w->kept_next + w->kept_first[d] + walled;
-            const int n = domain->kept_next - walled;
-            if (demi_shape_of(w, a)) demi_kept_share(w, c, n);
-            demi_kept_settle(w, d, old, (int)(old_end - old), c, n);
+        if (several && domain->persistent_next > walled)
+            demi_persistent_cover(w, d, from, end_k, walled);
+        if (domain->persistent_next > walled) {
+            demi_persistent *c = w->persistent_next + w->persistent_first[d] + walled;
+            const int n = domain->persistent_next - walled;
+            if (demi_shape_of(w, a)) demi_persistent_share(w, c, n);
+            demi_persistent_settle(w, d, old, (int)(old_end - old), c, n);
         }
     }
 }
 /* Enlarges the lists of work groups that overflowed. Returns 0 if memory ran out; nothing has
    changed then. */
-static int demi_kept_widen(dem_world *w) {
+static int demi_persistent_widen(dem_world *w) {
     int first[DEMI_DOMAINS + 1], d;
     for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
-        const int had = w->kept_first[d + 1] - w->kept_first[d];
+        const int had = w->persistent_first[d + 1] - w->persistent_first[d];
         const int more = d < w->domain_count && w->domains[d].overflow & 16 ? had/2 + 64 : 0;
         first[d + 1] = first[d] + had + more;
     }
-    if (!DEMI_GROW(w, w->kept_next, (size_t)first[DEMI_DOMAINS]) ||
-        !DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]) ||
+    if (!DEMI_GROW(w, w->persistent_next, (size_t)first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(w, w->persistent_now, (size_t)first[DEMI_DOMAINS]) ||
         !DEMI_GROW(w, w->coefs, 2*(size_t)first[DEMI_DOMAINS])) return 0;
     for (d = w->domain_count - 1; d > 0; d--)
-        memmove(w->kept_now + first[d], demi_kept_of(w, d),
-                (size_t)w->domains[d].kept*sizeof(demi_kept));
-    memcpy(w->kept_first, first, sizeof w->kept_first);
+        memmove(w->persistent_now + first[d], demi_persistent_of(w, d),
+                (size_t)w->domains[d].persistent*sizeof(demi_persistent));
+    memcpy(w->persistent_first, first, sizeof w->persistent_first);
     for (d = 0; d < w->domain_count; d++) w->domains[d].coefs = 0;
     return 1;
 }
@@ -812,22 +830,22 @@ static int demi_kept_widen(dem_world *w) {
 static int demi_touch(dem_world *w) {
     int d, again;
     w->margin.seen = demi_foreseen(w);
-    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
+    for (d = 0; d < w->domain_count; d++) w->domains[d].persistent_next = 0;
     if (!w->wall_count && !w->bodies.shaped && !w->effects.clustered) return 1;
     if ((!w->facets_valid && !demi_surfaces_make(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w)) ||
         (!w->flush.valid && !demi_flush_make(w))) return 0;
     demi_surfaces_follow(w);
     do {
-        demi_domains_do(w, demi_domain_kept_touch);
+        demi_domains_do(w, demi_domain_persistent_touch);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
-        if (again && !demi_kept_widen(w)) return 0;
+        if (again && !demi_persistent_widen(w)) return 0;
     } while (again);
     return 1;
 }
 /* Sets what a contact does not use, and its row of coefficients, to 0, since files and messages
    contain all of it. */
-static void demi_kept_tidy(const dem_world *w, demi_kept *c) {
+static void demi_persistent_tidy(const dem_world *w, demi_persistent *c) {
     int e;
     c->row = 0;
     for (e = w->memory_stride; e < DEMI_MEMORY; e++) c->memory[e] = 0;

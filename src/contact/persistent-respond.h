@@ -1,5 +1,5 @@
 /* ---------------------------------------------------------------------------------------------
-   >>kept-respond
+   >>persistent-respond
    Response of persistent contacts. For each contact it finds the coefficients, which contacts of
    one kind share (demi_coefs_row), and the history that it continues, and fills tiles of >>points.
    It also gathers the forces on bodies of later work groups, which wait in slots, for all contacts.
@@ -8,7 +8,8 @@
 
 /* Works out the coefficients of a contact, without its slope, and the two that are multiplied by
    the square root of m_eff (`root`). */
-static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out, dem_real *root) {
+static void demi_persistent_coefs(const dem_world *w, const demi_persistent *k, dem_real *out,
+                                  dem_real *root) {
     const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
     const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
     /* here a grain of a wall has mass */
@@ -32,7 +33,8 @@ static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
     return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
 }
 /* Copies the history from the contact that c continues. */
-DEM_INLINE void demi_kept_recall(const dem_world *w, const demi_kept *now, demi_kept *c) {
+DEM_INLINE void demi_persistent_recall(const dem_world *w, const demi_persistent *now,
+                                       demi_persistent *c) {
     int e;
     if (c->from == DEMI_TAKEN_OVER) return;
     for (e = 0; e < w->memory_stride; e++) {
@@ -42,8 +44,8 @@ DEM_INLINE void demi_kept_recall(const dem_world *w, const demi_kept *now, demi_
 }
 /* Makes room for the coefficients of `more` contacts of work group d. Returns 0 if its rows are
    empty, so that no contact has one yet. */
-static int demi_kept_rows_begin(dem_world *w, int d, int more) {
-    const int room = 2*(w->kept_first[d + 1] - w->kept_first[d]);
+static int demi_persistent_rows_begin(dem_world *w, int d, int more) {
+    const int room = 2*(w->persistent_first[d + 1] - w->persistent_first[d]);
     if (w->domains[d].coefs + more > room) w->domains[d].coefs = 0;
     return w->domains[d].coefs > 0;
 }
@@ -51,10 +53,10 @@ static int demi_kept_rows_begin(dem_world *w, int d, int more) {
    in the step before; otherwise one of the first few rows, or a new one. Masses, materials and
    shapes stay the same while lists are valid: growth drops the lists, and ghosts have their masses
    when forces are computed. */
-DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c,
-                                               const demi_kept *old, int known) {
+DEM_INLINE const demi_coefs_row *demi_persistent_row(dem_world *w, int d, demi_persistent *c,
+                                                     const demi_persistent *old, int known) {
     enum { FEW = 8 };
-    demi_coefs_row *rows = w->coefs + 2*(size_t)w->kept_first[d], key, *row;
+    demi_coefs_row *rows = w->coefs + 2*(size_t)w->persistent_first[d], key, *row;
     int *count = &w->domains[d].coefs, i, most = DEMI_MIN(*count, FEW);
     const int32_t *shape = w->bodies.shape;
     if (known && old->wall == c->wall && old->row >= 0 && old->row < *count &&
@@ -76,7 +78,7 @@ DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c
     if (i < most) return row;
     memcpy(row, &key, offsetof(demi_coefs_row, m_eff));
     row->m_eff = c->b < 0 && !key.shape[0] ? w->bodies.mass[c->a] : 0;
-    demi_kept_coefs(w, c, row->coef, row->root);
+    demi_persistent_coefs(w, c, row->coef, row->root);
     return row;
 }
 /* Returns the history that contact c continues: zeros, that of its old contact, or that with the
@@ -85,15 +87,17 @@ DEM_INLINE const demi_coefs_row *demi_kept_row(dem_world *w, int d, demi_kept *c
    falls, the spring keeps its length. The reverse would create energy. A contact that has ended in
    this one is merged first: the weighted mean of both springs stores no more energy than the two
    did. */
-static const dem_real *demi_kept_past(const dem_world *w, const demi_kept *now, demi_kept *c) {
-    const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
-    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? demi_kept_whole(&now[c->from]) : c->held;
-    const dem_real more = ended ? demi_kept_whole(ended) : 0, all = held + more;
-    const dem_real grip = demi_kept_whole(c), left = grip > all ? all/grip : 1;
+static const dem_real *demi_persistent_past(const dem_world *w, const demi_persistent *now,
+                                            demi_persistent *c) {
+    const demi_persistent *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
+    const dem_real held = c->from < 0 ? 0 : c->held < 0 ? demi_persistent_whole(&now[c->from])
+        : c->held;
+    const dem_real more = ended ? demi_persistent_whole(ended) : 0, all = held + more;
+    const dem_real grip = demi_persistent_whole(c), left = grip > all ? all/grip : 1;
     int k;
     if (c->from >= 0 && (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)))
         return now[c->from].memory;
-    demi_kept_recall(w, now, c);
+    demi_persistent_recall(w, now, c);
     if (c->from < 0) return c->memory;
     for (k = 0; k < w->laws.memory; k++) {
         if (!(w->laws.vectors >> k & 1) && k != w->laws.at_twisting) continue;
@@ -104,7 +108,7 @@ static const dem_real *demi_kept_past(const dem_world *w, const demi_kept *now, 
 }
 /* Sum of the two radii, m: of spheres, including those of clusters, or the bounding radii of other
    shapes; a wall adds none. */
-static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
+static dem_real demi_persistent_radii(const dem_world *w, const demi_persistent *k) {
     return demi_part_now(w, k->a, k->part_a).radius +
         (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
 }
@@ -112,8 +116,8 @@ DEM_INLINE dem_vec3 demi_middle(dem_vec3 a, dem_vec3 b) {
     return demi_scale(demi_add(a, b), DEM_R(0.5));
 }
 /* Fills row q of a contact with a wall, on its wall's side. */
-DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_vec3 mid,
-                                     demi_points *t, int q) {
+DEM_INLINE void demi_persistent_fetch_wall(const demi_run *r, const demi_persistent *k,
+                                           dem_vec3 mid, demi_points *t, int q) {
     const dem_world *w = r->w;
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
@@ -137,8 +141,8 @@ DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_
     demi_rows_put(&t->spun[1], q, wall->mid.spin);
 }
 /* Fills row q of a contact of two bodies, on the side of body b. */
-DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, const demi_kept *old,
-                                     demi_points *t, int q) {
+DEM_INLINE void demi_persistent_fetch_pair(const demi_run *r, const demi_persistent *k,
+                                           const demi_persistent *old, demi_points *t, int q) {
     const dem_world *w = r->w;
     const dem_real *u = w->bodies.vel, *uh = w->bodies.half_vel;
     demi_rows_minus(&t->rows.rate, (size_t)q, u + 4*k->a, u + 4*k->b);
@@ -154,7 +158,7 @@ DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, cons
                                                      demi_rows_at(&t->mid[1], q)));
 }
 /* Fills row q with the coefficients of its contact, unless it has them already. */
-DEM_INLINE void demi_kept_fetch_coefs(demi_points *t, int q, const demi_coefs_row *row) {
+DEM_INLINE void demi_persistent_fetch_coefs(demi_points *t, int q, const demi_coefs_row *row) {
     int e;
     t->rows.coef[DEMI_M_EFF][q] = t->known[q] = row->m_eff;
     t->turns |= !(row->m_eff > 0);
@@ -165,9 +169,9 @@ DEM_INLINE void demi_kept_fetch_coefs(demi_points *t, int q, const demi_coefs_ro
     t->filled[q] = row;
 }
 /* Fills row q with what the effective mass of its contact depends on. */
-DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, const demi_kept *k, demi_points *t,
-                                     int q) {
-    const dem_vec3 felt = demi_kept_felt(k);
+DEM_INLINE void demi_persistent_fetch_felt(const dem_world *w, const demi_persistent *k,
+                                           demi_points *t, int q) {
+    const dem_vec3 felt = demi_persistent_felt(k);
     const dem_real *a = w->bodies.yield + 6*k->a, *b = w->bodies.yield + 6*DEMI_MAX(k->b, 0);
     const dem_real both = k->b < 0 ? DEM_R(0) : DEM_R(1);
     int e;
@@ -182,8 +186,8 @@ DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, const demi_kept *k, dem
 }
 /* Appends contact c, which continues `old` with the history `past` and has the coefficients `row`,
    to a tile. */
-static void demi_kept_add(demi_points *t, demi_kept *c, const demi_kept *old,
-                          const dem_real *past, const demi_coefs_row *row) {
+static void demi_persistent_add(demi_points *t, demi_persistent *c, const demi_persistent *old,
+                                const dem_real *past, const demi_coefs_row *row) {
     const demi_run *r = &t->run;
     const dem_world *w = r->w;
     const dem_vec3 mid = demi_middle(c->arm_a, old->arm_a);
@@ -204,13 +208,13 @@ static void demi_kept_add(demi_points *t, demi_kept *c, const demi_kept *old,
         demi_rows_put(&t->mid[0], q, mid);
         demi_rows_put(&t->spun[0], q, demi_at(w->bodies.half_spin + 4*c->a));
     }
-    if (c->b < 0) demi_kept_fetch_wall(r, c, mid, t, q);
-    else demi_kept_fetch_pair(r, c, old, t, q);
-    demi_kept_fetch_coefs(t, q, row);
+    if (c->b < 0) demi_persistent_fetch_wall(r, c, mid, t, q);
+    else demi_persistent_fetch_pair(r, c, old, t, q);
+    demi_persistent_fetch_coefs(t, q, row);
     demi_points_weights(w, t, q, c);
     t->couple[q] = c->odd ? c->more.couple : 0;
     demi_rows_put(&t->outset, q, c->odd ? c->more.outset : demi_v(0, 0, 0));
-    if (w->bodies.shaped) demi_kept_fetch_felt(w, c, t, q);
+    if (w->bodies.shaped) demi_persistent_fetch_felt(w, c, t, q);
     if (!w->desc.law) return;
     t->rows.radius[0][q] = demi_part_now(w, c->a, c->part_a).radius;
     t->rows.radius[1][q] = c->b < 0 ? 0 : demi_part_now(w, c->b, c->part_b).radius;
@@ -218,7 +222,7 @@ static void demi_kept_add(demi_points *t, demi_kept *c, const demi_kept *old,
 /* Pads the last vector group of a tile with copies of its last contact, in every row that was
    filled, unless an earlier contact has left something. The padded results are ignored; copies
    avoid arithmetic on undefined values. */
-static void demi_kept_fill_up(demi_points *t, int full) {
+static void demi_persistent_fill_up(demi_points *t, int full) {
     const int last = t->count - 1, shaped = t->run.w->bodies.shaped;
     dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
         t->rows.memory[0], t->rows.coef[0], t->base[0], t->slope, t->share, t->grip, t->lift,
@@ -251,24 +255,24 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.moment + 4*body);
 }
 /* Prepares an empty tile for up to `count` contacts: see demi_points_begin. */
-static void demi_kept_tile_begin(const dem_world *w, demi_points *t, dem_real dt, int count) {
+static void demi_persistent_tile_begin(const dem_world *w, demi_points *t, dem_real dt, int count) {
     demi_points_begin(w, t, dt, count + DEMI_LANES);
     if (w->desc.law) t->run.stage[1] = demi_stage_own;      /* rows of contacts know no wall */
     t->hop = 1;
 }
 /* Evaluates the contacts of a tile. */
-static void demi_kept_evaluate(const dem_world *w, demi_points *t) {
-    demi_kept_fill_up(t, (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES);
+static void demi_persistent_evaluate(const dem_world *w, demi_points *t) {
+    demi_persistent_fill_up(t, (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES);
     demi_points_evaluate(w, t);
 }
 /* Evaluates a tile and adds its results. */
-static void demi_kept_tile_respond(dem_world *w, int d, demi_points *t) {
-    demi_kept_evaluate(w, t);
+static void demi_persistent_tile_respond(dem_world *w, int d, demi_points *t) {
+    demi_persistent_evaluate(w, t);
     demi_points_finish(w, d, t);
 }
 /* Counts a contact that a law is evaluated for: materials that have touched, largest overlap,
    numbers of contacts. fresh: it begins to touch in this step. */
-static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) {
+static void demi_persistent_count(dem_world *w, int d, const demi_persistent *c, int fresh) {
     demi_domain *domain = &w->domains[d];
     const int touches = c->overlap > 0;
     if (touches && fresh) {
@@ -283,41 +287,41 @@ static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) 
     }
     w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall].contacts +=
         touches && !c->corner;
-    domain->kept_walls += touches;
+    domain->persistent_walls += touches;
 }
 /* Evaluates all persistent contacts of a work group in list order. */
-static void demi_kept_respond(dem_world *w, int d) {
+static void demi_persistent_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
-    const demi_kept *now = demi_kept_of(w, d);
+    const demi_persistent *now = demi_persistent_of(w, d);
     DEMI_ALIGNED demi_points tile;
     int i, known;
-    domain->kept_walls = 0;
-    if (!domain->kept_next) return;
-    known = demi_kept_rows_begin(w, d, domain->kept_next);
-    demi_kept_tile_begin(w, &tile, dt, domain->kept_next);
-    for (i = 0; i < domain->kept_next; i++) {
-        demi_kept *c = w->kept_next + w->kept_first[d] + i;
-        const demi_kept *old = c->from < 0 ? c : now + c->from;
-        if (i + 5 < domain->kept_next) demi_kept_ahead(c, 5, 1);
-        if (i + 2 < domain->kept_next) {
+    domain->persistent_walls = 0;
+    if (!domain->persistent_next) return;
+    known = demi_persistent_rows_begin(w, d, domain->persistent_next);
+    demi_persistent_tile_begin(w, &tile, dt, domain->persistent_next);
+    for (i = 0; i < domain->persistent_next; i++) {
+        demi_persistent *c = w->persistent_next + w->persistent_first[d] + i;
+        const demi_persistent *old = c->from < 0 ? c : now + c->from;
+        if (i + 5 < domain->persistent_next) demi_persistent_ahead(c, 5, 1);
+        if (i + 2 < domain->persistent_next) {
             demi_body_fetch(w, c[2].a);
             if (c[2].b >= 0) demi_body_fetch(w, c[2].b);
-            if (c[2].from >= 0) demi_kept_ahead(now, (size_t)c[2].from, 0);
+            if (c[2].from >= 0) demi_persistent_ahead(now, (size_t)c[2].from, 0);
         }
-        if (!demi_kept_asked(w, c)) {           /* on its way through a reduced hole */
-            demi_kept_recall(w, now, c);
+        if (!demi_persistent_asked(w, c)) {     /* on its way through a reduced hole */
+            demi_persistent_recall(w, now, c);
             c->row = -1;
             c->force = demi_v(0, 0, 0);
-            domain->kept_walls += c->b < 0;
+            domain->persistent_walls += c->b < 0;
             continue;
         }
-        demi_kept_add(&tile, c, old, demi_kept_past(w, now, c),
-                      demi_kept_row(w, d, c, old, known && old != c));
-        demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
-        if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &tile);
+        demi_persistent_add(&tile, c, old, demi_persistent_past(w, now, c),
+                            demi_persistent_row(w, d, c, old, known && old != c));
+        demi_persistent_count(w, d, c, c->from < 0 || !(old->overlap > 0));
+        if (tile.count == DEMI_TILE) demi_persistent_tile_respond(w, d, &tile);
     }
-    if (tile.count) demi_kept_tile_respond(w, d, &tile);
+    if (tile.count) demi_persistent_tile_respond(w, d, &tile);
 }
 /* Clears the slot of a candidate with a later work group: its contacts add to it. */
 static void demi_slot_clear(dem_world *w, int k) {
@@ -326,7 +330,7 @@ static void demi_slot_clear(dem_world *w, int k) {
     if (rates) memset(w->cross_rate + rates*(size_t)k, 0, rates*sizeof(dem_real));
 }
 /* Clears the slots of all pairs of bodies that may have persistent contacts. */
-static void demi_kept_clear(dem_world *w, int d) {
+static void demi_persistent_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     int p;
     for (p = domain->near_shaped_cross; p < domain->near_shaped_end; p++)
