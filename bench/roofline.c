@@ -6,8 +6,8 @@
    Measures, in the same run: bandwidth (triad a = b + s c, 24 bytes per element) with arrays that fit in L1, L2, L3 and
    in none of them; the peak of fused multiply-adds; exact 1/sqrt. Then runs bed, drum and gas step by step with a clock
    around each phase:
-     respond   pairs of the pruned list: bodies copied into rows, contact, motion, law, forces added to both (w->kernel)
-     rest      forces fetched from other domains, walls, sums (demi_forces without the kernel)
+     respond   pairs of the pruned list: bodies copied into rows, contact, motion, law, forces added to both (demi_pairs)
+     rest      forces fetched from other domains, walls, sums (demi_forces without them)
      move      half kicks, drift, largest changes, forces cleared (demi_step_move)
      near      a new pruned list from the candidates (demi_near_make), spread over its steps
      search    bodies sorted, new candidates, a pruned list, contact history carried over (demi_rebuild), spread likewise
@@ -156,17 +156,31 @@ static void measure_limits(void) {
 
 /* ---- steps with a clock ---- */
 
-static void (*kernel)(dem_world *w, int domain);
-static double kernel_time;
-static void kernel_timed(dem_world *w, int domain) {
-    const double begun = study_clock();
-    kernel(w, domain);
-    kernel_time += study_clock() - begun;
-}
-static void kernel_choose(dem_world *w) {
-    demi_kernel_choose(w);
-    kernel = w->kernel;
-    w->kernel = kernel_timed;
+enum { SAMPLE = 8 };    /* every how many steps the pairs are timed alone */
+/* Returns the time of the loop over pairs: it runs once more, without time, and what it wrote is put back. */
+static double pairs_timed(dem_world *w) {
+    const size_t bodies = 4*(size_t)w->bodies.count*sizeof(dem_real);
+    const size_t history = (size_t)w->domain_count*(size_t)w->memory_stride*(size_t)w->near.stride*sizeof(dem_real);
+    char *kept = (char *)malloc(2*bodies + history + sizeof(demi_domain)*(size_t)w->domain_count);
+    const int valid = w->stage.forces_valid;
+    double begun;
+    int d;
+    if (!kept) return 0;
+    memcpy(kept, w->bodies.force, bodies);
+    memcpy(kept + bodies, w->bodies.torque, bodies);
+    if (history) memcpy(kept + 2*bodies, w->near.memory, history);
+    memcpy(kept + 2*bodies + history, w->domains, sizeof(demi_domain)*(size_t)w->domain_count);
+    w->stage.forces_valid = 0;
+    begun = study_clock();
+    for (d = 0; d < w->domain_count; d++) demi_pairs(w, d);
+    begun = study_clock() - begun;
+    w->stage.forces_valid = valid;
+    memcpy(w->bodies.force, kept, bodies);
+    memcpy(w->bodies.torque, kept + bodies, bodies);
+    if (history) memcpy(w->near.memory, kept + 2*bodies, history);
+    memcpy(w->domains, kept + 2*bodies + history, sizeof(demi_domain)*(size_t)w->domain_count);
+    free(kept);
+    return begun;
 }
 static double near_made, search_made;  /* how often, so far */
 /* demi_step_once with clocks; time[] grows. 0: the run broke. */
@@ -180,7 +194,6 @@ static int step_timed(dem_world *w, double time[PHASES]) {
     moved = found = study_clock();
     if (!w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.gone > w->margin.skin || w->margin.gone + w->margin.walls_gone > w->margin.skin) {
         if (demi_rebuild(w, "dem_world_step") != DEM_OK) return 0;
-        kernel_choose(w);
         phase = SEARCH;
         search_made++;
     } else if (demi_near_due(w)) {
@@ -190,15 +203,14 @@ static int step_timed(dem_world *w, double time[PHASES]) {
         near_made++;
     }
     if (phase != MOVE) found = study_clock();
-    kernel_time = 0;
     if (!demi_touch(w)) return 0;               /* counted with the rest: walls */
     demi_forces(w);
     w->stage.moved = 0;
     done = study_clock();
     time[MOVE] += moved - begun;
     time[phase] += found - moved;
-    time[RESPOND] += kernel_time;
-    time[REST] += done - found - kernel_time;
+    time[REST] += done - found;                 /* and the pairs, until scene_place takes them out */
+    if (w->clock.steps%SAMPLE == 0) time[RESPOND] += SAMPLE*pairs_timed(w);
     time[WHOLE] += done - begun;
     return 1;
 }
@@ -357,7 +369,6 @@ static void scene_place(const char *folder, const char *name) {
     tallies t;
     int turn, p, k, ok = w && dem_world_step(w, 100) == DEM_OK;
     if (ok) {
-        kernel_choose(w);
         near_made = search_made = 0;
         memset(&t, 0, sizeof t);
         for (turn = 0; turn < turns_asked && ok; turn++) {
@@ -366,6 +377,7 @@ static void scene_place(const char *folder, const char *name) {
                 ok = step_timed(w, time);
                 if (k%16 == 15 || steps < 16) look(w, &t);
             }
+            time[REST] -= time[RESPOND];
             for (p = 0; p < PHASES; p++) times[p][turn] = time[p]/steps/s.count;
         }
         if (ok) {

@@ -1935,7 +1935,7 @@ static void more_tests(void) {
         CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
         CHECK_EQ(world->bodies.count, 1);
         CHECK_EQ(dem_contacts_get(world, 0, 0), 0);
-        for (i = 0; i < DEMI_DOMAINS; i++) CHECK_EQ(world->domains[i].kept, 0);
+        for (i = 0; i < DEMI_DOMAINS; i++) CHECK_EQ(world->domains[i].persistent, 0);
         dem_world_destroy(world);
     }
     TEST("bodies of all shapes are removed and leave, and the others continue") {

@@ -419,9 +419,9 @@ int main(int argc, char **argv) {
     TEST("plates of 100 spheres, which need more contacts than their list has room for, fall as each does alone") {
         dem_world *all = plates(-1);
         int i, k, moved = 0;
-        const int room = all->kept_first[DEMI_DOMAINS];
+        const int room = all->persistent_first[DEMI_DOMAINS];
         CHECK_EQ(dem_world_step(all, 20), DEM_OK);
-        CHECK(all->kept_first[DEMI_DOMAINS] > 2*room);
+        CHECK(all->persistent_first[DEMI_DOMAINS] > 2*room);
         CHECK_EQ(dem_world_step(all, 780), DEM_OK);
         for (k = 0; k < PLATES; k++) {
             dem_world *alone = plates(k);

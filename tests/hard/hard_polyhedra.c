@@ -157,7 +157,7 @@ static void stones_throw(stone_target target, int lanes, int elastic, uint64_t s
         for (k = 0; k < world->domain_count; k++) {    /* still at it: energy is in the springs */
             const demi_persistent *c = demi_persistent_of(world, k);
             int j;
-            for (j = 0; j < world->domains[k].kept; j++)
+            for (j = 0; j < world->domains[k].persistent; j++)
                 touching |= c[j].overlap > 0 && (world->bodies.slot[c[j].a] + 1 == lane[i].a.slot ||
                                                  (c[j].b >= 0 && world->bodies.slot[c[j].b] + 1 == lane[i].a.slot));
         }
