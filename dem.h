@@ -73,12 +73,12 @@
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves
+       >>continued         which contact of the step before a persistent contact continues
        >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
        >>flush             fixed polyhedra that touch: one surface
        >>meets             contact geometry of two spheres or ellipsoids
        >>meets-polyhedra   contact geometry of polyhedra with other bodies
        >>meet-tables       functions by shape and by wall; contact geometry on a wall
-       >>continued         which contact of the step before a persistent contact continues
        >>persistent              contacts with walls and of other shapes: persistent contacts
        >>points            contacts at points of bodies to forces and torques
        >>persistent-respond      persistent contacts: coefficients and histories
@@ -22036,12 +22036,15 @@ static int demi_grain_polyhedron(const demi_view *start, const demi_part *part,
    Polyhedra and curved pieces of walls in closed form. With springs, the pressure on wires and on
    the walls of round holes (>>polyhedra-sieves) is integrated along each line (generator) of a
    piece and summed over angles, in intervals where the integrand is smooth; they are bounded by
-   edges, pyramids and faces that cross the piece or the rings at its ends. (Facets take five times
-   as long there. On cylinders and surfaces of revolution they take half the time: >>tessellate.)
+   edges, pyramids and faces that cross the piece or the rings at its ends. (Facets take 10 to 18
+   times as long there. On cylinders and surfaces of revolution they take half the time:
+   >>tessellate. Their cost grows with the number in reach: a cube of 10 mm that rests in the tip of
+   a cone has 528 in reach and 12 contact points; in a tube of 60 mm it has 67 and 4, and a step
+   takes an eighth of the time.)
 
    With impulses, the contact points are corners if a piece curves around the body, points of the
    plane along the nearest line if it curves away, and points of the rings at its ends. (Facets take
-   four to six times as long.)
+   2 to 570 times as long: least on cylinders, most on wires.)
    --------------------------------------------------------------------------------------------- */
 
 /* A piece of a surface of revolution about z: its lines run from radius a to b and height g to h,
@@ -22883,6 +22886,129 @@ static int demi_sieve_polyhedron(const demi_view *start, const demi_part *part,
 #endif /* DEM_NO_POLYHEDRA */
 
 /* ---------------------------------------------------------------------------------------------
+   >>continued
+   Which persistent contact of the step before a new one of >>persistent continues. The functions
+   return its index within its work group, or -1. `old` and `olds` are the contacts that body a had
+   in the step before, and their number. Writes the field `from` of new contacts only.
+   --------------------------------------------------------------------------------------------- */
+
+/* Returns the old contact with the same partner and parts or, at a wall, with the same wall, part,
+   element and corner; -1 if there is none. */
+DEM_INLINE int demi_persistent_same(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                    const demi_persistent *c) {
+    const int first = (int)(old - demi_persistent_of(w, d));
+    int *next = &w->domains[d].persistent_same, n, i = *next - first;
+    if (i < 0 || i >= olds) i = 0;              /* usually the one after the last match */
+    for (n = 0; n < olds; n++) {
+        if (old[i].element == c->element && old[i].wall == c->wall &&
+            old[i].part_a == c->part_a && old[i].b == c->b && old[i].part_b == c->part_b &&
+            old[i].corner == c->corner) {
+            *next = first + i + 1;
+            return first + i;
+        }
+        if (++i == olds) i = 0;
+    }
+    return -1;
+}
+/* Which old contact fits best, if no such key identifies it:
+       TURNED   polyhedron on a wall, soft contacts: the nearest normal within 45 degrees, of the
+                same element and corner (round walls, wires and holes are one element all around)
+       NEAREST  polyhedra, rigid contacts: the nearest point of the same pair or wall, with a
+                normal within about 18 degrees, that no new contact nearer to it continues
+       SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
+enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
+/* The number of the surface that contact c is with. */
+static int demi_persistent_surface(const dem_world *w, const demi_persistent *c) {
+    return demi_surface_for(w, c->wall, c->a);
+}
+/* Returns how well old contact o (index `from`) fits contact c, which slid onto this element, or
+   DEMI_FAR_OFF if it may not be continued. The criterion is the cosine between the normals. If
+   several are nearly equal (within some 3 degrees), contacts that nothing continues yet come first,
+   then those with the same sign of the weight, then those of the same wall. Walls at rest relative
+   to each other count as one wall. On facets a contact point that begins at depth has split off an
+   older one and copies its history. Copies do not add friction: each split also creates a contact
+   of negative weight (>>facets). On other walls only one new contact may continue o. */
+static dem_real demi_persistent_slid(const dem_world *w, const demi_persistent *o, int from,
+                                     const demi_persistent *fresh, int freshs,
+                                     const demi_persistent *c) {
+    const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
+    const demi_wall *wall = &w->walls[c->wall],
+        *s = demi_surface_of(w, demi_persistent_surface(w, c));
+    const int crossed = demi_wall_is(s, DEMI_CROSSED), faceted = demi_faceted(s);
+    const int alike = (o->weight < 0) == (c->share < 0);
+    int j, taken = 0;
+    if (w->walls[o->wall].group != wall->group || ((crossed || !(c->share < 0)) && !alike))
+        return DEMI_FAR_OFF;
+    for (j = 0; j < freshs && !taken; j++)
+        taken = fresh[j].wall == o->wall && fresh[j].element == o->element;
+    for (j = 0; j < freshs && !taken && !faceted; j++) {        /* only the nearest one */
+        const dem_real nearer = demi_dot(o->normal, demi_sub(fresh[j].normal, c->normal));
+        taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
+            (fresh[j].from == from || (fresh[j].from < 0 &&
+             (nearer > 0 || (!(nearer < 0) && fresh + j < c))));
+    }
+    if (taken && (!faceted || !(2*c->overlap > o->overlap))) return DEMI_FAR_OFF;
+    return demi_dot(o->normal, c->normal) + (taken ? 0 : DEM_R(1e-3)) +
+        (o->wall == c->wall ? hair : 0) + (alike ? 2*hair : 0);
+}
+/* True if two contacts, of body and wall or of two bodies, have the same partner, where walls that
+   are joined to one surface are the same. */
+DEM_INLINE int demi_persistent_one(const dem_world *w, const demi_persistent *a,
+                                   const demi_persistent *b) {
+    return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 &&
+        demi_surface_number(w, a->wall) == demi_surface_number(w, b->wall));
+}
+/* Squared distance of the points of two contacts of one body, m2, as seen from its centre. */
+DEM_INLINE dem_real demi_persistent_off2(const demi_persistent *a, const demi_persistent *b) {
+    const dem_vec3 way = demi_sub(a->arm_a, b->arm_a);
+    return demi_dot(way, way);
+}
+/* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
+   with this wall. */
+static int demi_persistent_best(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                const demi_persistent *fresh, int freshs, const demi_persistent *c,
+                                enum demi_fit how) {
+    const int first = (int)(old - demi_persistent_of(w, d));
+    dem_real most = DEMI_FAR_OFF;
+    int i, k, best = -1;
+    for (i = 0; i < olds; i++) {
+        const demi_persistent *o = &old[i];
+        dem_real fit = demi_dot(o->normal, c->normal);
+        if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
+            o->part_a != c->part_a || o->part_b != c->part_b ||
+            (how != DEMI_FIT_SLID && !demi_persistent_one(w, o, c)) ||
+            (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
+            (o->element != c->element && how == DEMI_FIT_TURNED) ||
+            demi_persistent_later(o)) continue;
+        if (how == DEMI_FIT_SLID) fit = demi_persistent_slid(w, o, first + i, fresh, freshs, c);
+        if (how == DEMI_FIT_NEAREST) fit = -demi_persistent_off2(o, c);
+        if (!(fit > most)) continue;
+        for (k = 0; how == DEMI_FIT_NEAREST && k < freshs; k++)
+            if (fresh[k].from == first + i && !(demi_persistent_off2(o, &fresh[k]) > -fit)) break;
+        if (how == DEMI_FIT_NEAREST && k < freshs) continue;
+        most = fit;
+        best = first + i;
+    }
+    return best;
+}
+/* Finds which old contacts `count` new ones of one pair or wall continue, by DEMI_FIT_NEAREST. A
+   new contact takes an old one from another that is farther from it; that one looks again. So the
+   order of contacts changes nothing. */
+static void demi_persistent_nearest(const dem_world *w, int d, const demi_persistent *old, int olds,
+                                    demi_persistent *fresh, int count) {
+    int i, k, next;
+    for (i = 0; i < count; i++) fresh[i].from = -1;
+    for (i = 0; i < count; i++)
+        for (k = i; k < count; k = next) {
+            const int from = demi_persistent_best(w, d, old, olds, fresh, count, &fresh[k],
+                                                  DEMI_FIT_NEAREST);
+            for (next = 0; next < count && (from < 0 || fresh[next].from != from); next++);
+            if (next < count) fresh[next].from = -1;
+            fresh[k].from = from;
+        }
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>ellipsoids
    Contact points of ellipsoids with ellipsoids and spheres, a tile of pairs at a time. >>persistent
    asks for pairs in the order of its list. A tile is filled with the next pairs whose bounding
@@ -22923,7 +23049,6 @@ typedef struct demi_ellipsoid_tile {
     int32_t entry[DEMI_MEETS], from[DEMI_MEETS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
     const demi_persistent *old;    /* first old contact of body a or of a later body */
-    const demi_persistent *after;  /* the one after the last match */
 } demi_ellipsoid_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -23021,18 +23146,6 @@ DEM_INLINE dem_real demi_ellipsoid_body_put(const dem_world *w, demi_ellipsoid_t
     return demi_ellipsoid_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
                               demi_scale(shape->axes, scale));
 }
-/* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
-DEM_INLINE const demi_persistent *demi_ellipsoids_old(demi_ellipsoid_tile *t,
-                                                      const demi_persistent *last, int a, int b) {
-    const demi_persistent *o;
-    while (t->old < last && t->old->a < a) t->after = ++t->old;
-    for (o = t->after; o < last && o->a == a && o->b != b;) o++;
-    if (o == last || o->a != a)                 /* then those before that */
-        for (o = t->old; o < t->after && o->b != b;) o++;
-    if (o == last || o->a != a || o->b != b) return 0;
-    t->after = o + 1;
-    return o;
-}
 /* Fills a tile with pairs of ellipsoids among entries p .. end - 1 of the pruned list of work group
    d, and does one iteration for all of them. */
 static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
@@ -23040,7 +23153,10 @@ static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
     const int base = d*w->near.stride;
     const demi_persistent *now = demi_persistent_of(w, d), *o;
     const demi_persistent *last = now + w->domains[d].persistent;
-    int k;
+    demi_persistent key;
+    int k, olds;
+    memset(&key, 0, sizeof key);
+    key.wall = key.element = -1;
     t->count = t->next = 0;
     for (; p < end && t->count < DEMI_MEETS; p++) {
         const int a = w->near.a[base + p], b = w->near.b[base + p];
@@ -23060,10 +23176,13 @@ static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
         other = demi_shape_of(w, b);
         if ((!one && !other) || !demi_ellipsoid_is(one) || !demi_ellipsoid_is(other)) continue;
         k = t->count++;
-        o = demi_ellipsoids_old(t, last, a, b);
-        if (t->after + DEMI_MEETS_AHEAD < last) DEMI_FETCH(t->after + DEMI_MEETS_AHEAD);
+        while (t->old < last && t->old->a < a) t->old++;
+        for (olds = 0; t->old + olds < last && t->old[olds].a == a;) olds++;
+        key.b = b;
         t->entry[k] = p;
-        t->from[k] = o ? (int32_t)(o - now) : -1;
+        t->from[k] = demi_persistent_same(w, d, t->old, olds, &key);
+        o = t->from[k] < 0 ? 0 : now + t->from[k];
+        if (t->old + olds + DEMI_MEETS_AHEAD < last) DEMI_FETCH(t->old + olds + DEMI_MEETS_AHEAD);
         thin = demi_ellipsoid_body_put(w, t, k, 0, a, one);
         thin += demi_ellipsoid_body_put(w, t, k, 1, b, other);
         demi_ellipsoids_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);
@@ -23996,129 +24115,6 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>continued
-   Which persistent contact of the step before a new one of >>persistent continues. The functions
-   return its index within its work group, or -1. `old` and `olds` are the contacts that body a had
-   in the step before, and their number. Writes the field `from` of new contacts only.
-   --------------------------------------------------------------------------------------------- */
-
-/* Returns the old contact with the same partner and parts or, at a wall, with the same wall, part,
-   element and corner; -1 if there is none. */
-DEM_INLINE int demi_persistent_same(const dem_world *w, int d, const demi_persistent *old, int olds,
-                                    const demi_persistent *c) {
-    const int first = (int)(old - demi_persistent_of(w, d));
-    int *next = &w->domains[d].persistent_same, n, i = *next - first;
-    if (i < 0 || i >= olds) i = 0;              /* usually the one after the last match */
-    for (n = 0; n < olds; n++) {
-        if (old[i].element == c->element && old[i].wall == c->wall &&
-            old[i].part_a == c->part_a && old[i].b == c->b && old[i].part_b == c->part_b &&
-            old[i].corner == c->corner) {
-            *next = first + i + 1;
-            return first + i;
-        }
-        if (++i == olds) i = 0;
-    }
-    return -1;
-}
-/* Which old contact fits best, if no such key identifies it:
-       TURNED   polyhedron on a wall, soft contacts: the nearest normal within 45 degrees, of the
-                same element and corner (round walls, wires and holes are one element all around)
-       NEAREST  polyhedra, rigid contacts: the nearest point of the same pair or wall, with a
-                normal within about 18 degrees, that no new contact nearer to it continues
-       SLID     any wall, if nothing else fits: the body slid onto a neighbouring element */
-enum demi_fit { DEMI_FIT_TURNED, DEMI_FIT_NEAREST, DEMI_FIT_SLID };
-/* The number of the surface that contact c is with. */
-static int demi_persistent_surface(const dem_world *w, const demi_persistent *c) {
-    return demi_surface_for(w, c->wall, c->a);
-}
-/* Returns how well old contact o (index `from`) fits contact c, which slid onto this element, or
-   DEMI_FAR_OFF if it may not be continued. The criterion is the cosine between the normals. If
-   several are nearly equal (within some 3 degrees), contacts that nothing continues yet come first,
-   then those with the same sign of the weight, then those of the same wall. Walls at rest relative
-   to each other count as one wall. On facets a contact point that begins at depth has split off an
-   older one and copies its history. Copies do not add friction: each split also creates a contact
-   of negative weight (>>facets). On other walls only one new contact may continue o. */
-static dem_real demi_persistent_slid(const dem_world *w, const demi_persistent *o, int from,
-                                     const demi_persistent *fresh, int freshs,
-                                     const demi_persistent *c) {
-    const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    const demi_wall *wall = &w->walls[c->wall],
-        *s = demi_surface_of(w, demi_persistent_surface(w, c));
-    const int crossed = demi_wall_is(s, DEMI_CROSSED), faceted = demi_faceted(s);
-    const int alike = (o->weight < 0) == (c->share < 0);
-    int j, taken = 0;
-    if (w->walls[o->wall].group != wall->group || ((crossed || !(c->share < 0)) && !alike))
-        return DEMI_FAR_OFF;
-    for (j = 0; j < freshs && !taken; j++)
-        taken = fresh[j].wall == o->wall && fresh[j].element == o->element;
-    for (j = 0; j < freshs && !taken && !faceted; j++) {        /* only the nearest one */
-        const dem_real nearer = demi_dot(o->normal, demi_sub(fresh[j].normal, c->normal));
-        taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
-            (fresh[j].from == from || (fresh[j].from < 0 &&
-             (nearer > 0 || (!(nearer < 0) && fresh + j < c))));
-    }
-    if (taken && (!faceted || !(2*c->overlap > o->overlap))) return DEMI_FAR_OFF;
-    return demi_dot(o->normal, c->normal) + (taken ? 0 : DEM_R(1e-3)) +
-        (o->wall == c->wall ? hair : 0) + (alike ? 2*hair : 0);
-}
-/* True if two contacts, of body and wall or of two bodies, have the same partner, where walls that
-   are joined to one surface are the same. */
-DEM_INLINE int demi_persistent_one(const dem_world *w, const demi_persistent *a,
-                                   const demi_persistent *b) {
-    return a->wall == b->wall || (a->wall >= 0 && b->wall >= 0 &&
-        demi_surface_number(w, a->wall) == demi_surface_number(w, b->wall));
-}
-/* Squared distance of the points of two contacts of one body, m2, as seen from its centre. */
-DEM_INLINE dem_real demi_persistent_off2(const demi_persistent *a, const demi_persistent *b) {
-    const dem_vec3 way = demi_sub(a->arm_a, b->arm_a);
-    return demi_dot(way, way);
-}
-/* Returns the best old contact for c, or -1. `fresh` and `freshs`: all new contacts of this pair or
-   with this wall. */
-static int demi_persistent_best(const dem_world *w, int d, const demi_persistent *old, int olds,
-                                const demi_persistent *fresh, int freshs, const demi_persistent *c,
-                                enum demi_fit how) {
-    const int first = (int)(old - demi_persistent_of(w, d));
-    dem_real most = DEMI_FAR_OFF;
-    int i, k, best = -1;
-    for (i = 0; i < olds; i++) {
-        const demi_persistent *o = &old[i];
-        dem_real fit = demi_dot(o->normal, c->normal);
-        if (!(fit > (how == DEMI_FIT_TURNED ? DEM_R(0.7) : DEM_R(0.95))) || o->b != c->b ||
-            o->part_a != c->part_a || o->part_b != c->part_b ||
-            (how != DEMI_FIT_SLID && !demi_persistent_one(w, o, c)) ||
-            (o->corner != c->corner && how != DEMI_FIT_NEAREST) ||
-            (o->element != c->element && how == DEMI_FIT_TURNED) ||
-            demi_persistent_later(o)) continue;
-        if (how == DEMI_FIT_SLID) fit = demi_persistent_slid(w, o, first + i, fresh, freshs, c);
-        if (how == DEMI_FIT_NEAREST) fit = -demi_persistent_off2(o, c);
-        if (!(fit > most)) continue;
-        for (k = 0; how == DEMI_FIT_NEAREST && k < freshs; k++)
-            if (fresh[k].from == first + i && !(demi_persistent_off2(o, &fresh[k]) > -fit)) break;
-        if (how == DEMI_FIT_NEAREST && k < freshs) continue;
-        most = fit;
-        best = first + i;
-    }
-    return best;
-}
-/* Finds which old contacts `count` new ones of one pair or wall continue, by DEMI_FIT_NEAREST. A
-   new contact takes an old one from another that is farther from it; that one looks again. So the
-   order of contacts changes nothing. */
-static void demi_persistent_nearest(const dem_world *w, int d, const demi_persistent *old, int olds,
-                                    demi_persistent *fresh, int count) {
-    int i, k, next;
-    for (i = 0; i < count; i++) fresh[i].from = -1;
-    for (i = 0; i < count; i++)
-        for (k = i; k < count; k = next) {
-            const int from = demi_persistent_best(w, d, old, olds, fresh, count, &fresh[k],
-                                                  DEMI_FIT_NEAREST);
-            for (next = 0; next < count && (from < 0 || fresh[next].from != from); next++);
-            if (next < count) fresh[next].from = -1;
-            fresh[k].from = from;
-        }
-}
-
-/* ---------------------------------------------------------------------------------------------
    >>persistent
    Contact detection for persistent contacts: all contacts except those of sphere on sphere (with
    springs also of spheres of clusters), which >>respond and >>members handle without such a list.
@@ -24888,7 +24884,7 @@ static void demi_domain_persistent_touch(dem_world *w, int d) {
     demi_ellipsoid_tile own, cross;
     own.end = cross.end = ellipsoids ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
-    own.old = own.after = cross.old = cross.after = old;
+    own.old = cross.old = old;
     domain->persistent_next = domain->persistent_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered || (w->bodies.shaped && demi_response_is(w, DEMI_LAWS)))

@@ -73,12 +73,12 @@
        >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
        >>polyhedra-round   polyhedra and curved pieces of walls, in closed form
        >>polyhedra-sieves  contacts of polyhedra with sieves
+       >>continued         which contact of the step before a persistent contact continues
        >>ellipsoids        contact points of ellipsoids, a tile of pairs at a time
        >>flush             fixed polyhedra that touch: one surface
        >>meets             contact geometry of two spheres or ellipsoids
        >>meets-polyhedra   contact geometry of polyhedra with other bodies
        >>meet-tables       functions by shape and by wall; contact geometry on a wall
-       >>continued         which contact of the step before a persistent contact continues
        >>persistent              contacts with walls and of other shapes: persistent contacts
        >>points            contacts at points of bodies to forces and torques
        >>persistent-respond      persistent contacts: coefficients and histories
@@ -269,6 +269,7 @@
 #include "contact/polyhedra-round.h"
 #include "contact/polyhedra-sieves.h"
 #endif /* DEM_NO_POLYHEDRA */
+#include "contact/continued.h"
 #include "contact/ellipsoids.h"
 #ifndef DEM_NO_POLYHEDRA
 #include "contact/flush.h"
@@ -278,7 +279,6 @@
 #include "contact/meets-polyhedra.h"
 #endif /* DEM_NO_POLYHEDRA */
 #include "contact/meet-tables.h"
-#include "contact/continued.h"
 #include "contact/persistent.h"
 #include "contact/points.h"
 #include "contact/persistent-respond.h"

@@ -39,7 +39,6 @@ typedef struct demi_ellipsoid_tile {
     int32_t entry[DEMI_MEETS], from[DEMI_MEETS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
     const demi_persistent *old;    /* first old contact of body a or of a later body */
-    const demi_persistent *after;  /* the one after the last match */
 } demi_ellipsoid_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -137,18 +136,6 @@ DEM_INLINE dem_real demi_ellipsoid_body_put(const dem_world *w, demi_ellipsoid_t
     return demi_ellipsoid_put(t, k, side, demi_quat_at(w->bodies.orient + 4*body),
                               demi_scale(shape->axes, scale));
 }
-/* Returns the old contact of bodies a and b, null if there is none. last: the end of the list. */
-DEM_INLINE const demi_persistent *demi_ellipsoids_old(demi_ellipsoid_tile *t,
-                                                      const demi_persistent *last, int a, int b) {
-    const demi_persistent *o;
-    while (t->old < last && t->old->a < a) t->after = ++t->old;
-    for (o = t->after; o < last && o->a == a && o->b != b;) o++;
-    if (o == last || o->a != a)                 /* then those before that */
-        for (o = t->old; o < t->after && o->b != b;) o++;
-    if (o == last || o->a != a || o->b != b) return 0;
-    t->after = o + 1;
-    return o;
-}
 /* Fills a tile with pairs of ellipsoids among entries p .. end - 1 of the pruned list of work group
    d, and does one iteration for all of them. */
 static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
@@ -156,7 +143,10 @@ static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
     const int base = d*w->near.stride;
     const demi_persistent *now = demi_persistent_of(w, d), *o;
     const demi_persistent *last = now + w->domains[d].persistent;
-    int k;
+    demi_persistent key;
+    int k, olds;
+    memset(&key, 0, sizeof key);
+    key.wall = key.element = -1;
     t->count = t->next = 0;
     for (; p < end && t->count < DEMI_MEETS; p++) {
         const int a = w->near.a[base + p], b = w->near.b[base + p];
@@ -176,10 +166,13 @@ static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
         other = demi_shape_of(w, b);
         if ((!one && !other) || !demi_ellipsoid_is(one) || !demi_ellipsoid_is(other)) continue;
         k = t->count++;
-        o = demi_ellipsoids_old(t, last, a, b);
-        if (t->after + DEMI_MEETS_AHEAD < last) DEMI_FETCH(t->after + DEMI_MEETS_AHEAD);
+        while (t->old < last && t->old->a < a) t->old++;
+        for (olds = 0; t->old + olds < last && t->old[olds].a == a;) olds++;
+        key.b = b;
         t->entry[k] = p;
-        t->from[k] = o ? (int32_t)(o - now) : -1;
+        t->from[k] = demi_persistent_same(w, d, t->old, olds, &key);
+        o = t->from[k] < 0 ? 0 : now + t->from[k];
+        if (t->old + olds + DEMI_MEETS_AHEAD < last) DEMI_FETCH(t->old + olds + DEMI_MEETS_AHEAD);
         thin = demi_ellipsoid_body_put(w, t, k, 0, a, one);
         thin += demi_ellipsoid_body_put(w, t, k, 1, b, other);
         demi_ellipsoids_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);

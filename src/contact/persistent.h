@@ -768,7 +768,7 @@ static void demi_domain_persistent_touch(dem_world *w, int d) {
     demi_ellipsoid_tile own, cross;
     own.end = cross.end = ellipsoids ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
-    own.old = own.after = cross.old = cross.after = old;
+    own.old = cross.old = old;
     domain->persistent_next = domain->persistent_same = 0;
     domain->overflow &= ~16;
     if (w->effects.clustered || (w->bodies.shaped && demi_response_is(w, DEMI_LAWS)))
