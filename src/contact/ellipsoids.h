@@ -38,7 +38,8 @@ typedef struct demi_ellipsoid_tile {
     double s[3][DEMI_MEETS], normal[3][DEMI_MEETS], point[3][DEMI_MEETS];
     int32_t entry[DEMI_MEETS], from[DEMI_MEETS]; /* of the pruned list; old contact, -1: none */
     int count, next, end;          /* pairs; the next to be taken; entries up to here were seen */
-    const demi_persistent *old;    /* first old contact of body a or of a later body */
+    const demi_persistent *old;    /* first old contact of body `of` or of a later body, */
+    int of, olds;                  /* and the number of those of `of` */
 } demi_ellipsoid_tile;
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -144,7 +145,7 @@ static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
     const demi_persistent *now = demi_persistent_of(w, d), *o;
     const demi_persistent *last = now + w->domains[d].persistent;
     demi_persistent key;
-    int k, olds;
+    int k;
     memset(&key, 0, sizeof key);
     key.wall = key.element = -1;
     t->count = t->next = 0;
@@ -166,13 +167,17 @@ static DEMI_APART void demi_ellipsoids_find(dem_world *w, int d, int p, int end,
         other = demi_shape_of(w, b);
         if ((!one && !other) || !demi_ellipsoid_is(one) || !demi_ellipsoid_is(other)) continue;
         k = t->count++;
-        while (t->old < last && t->old->a < a) t->old++;
-        for (olds = 0; t->old + olds < last && t->old[olds].a == a;) olds++;
+        if (t->of != a) {
+            while (t->old < last && t->old->a < a) t->old++;
+            for (t->olds = 0; t->old + t->olds < last && t->old[t->olds].a == a;) t->olds++;
+            t->of = a;
+        }
         key.b = b;
         t->entry[k] = p;
-        t->from[k] = demi_persistent_same(w, d, t->old, olds, &key);
+        t->from[k] = demi_persistent_same(w, d, t->old, t->olds, &key);
         o = t->from[k] < 0 ? 0 : now + t->from[k];
-        if (t->old + olds + DEMI_MEETS_AHEAD < last) DEMI_FETCH(t->old + olds + DEMI_MEETS_AHEAD);
+        if (t->old + t->olds + DEMI_MEETS_AHEAD < last)
+            DEMI_FETCH(t->old + t->olds + DEMI_MEETS_AHEAD);
         thin = demi_ellipsoid_body_put(w, t, k, 0, a, one);
         thin += demi_ellipsoid_body_put(w, t, k, 1, b, other);
         demi_ellipsoids_row(t, k, r, o ? o->lambda : 0, (double)demi_range(w, radii), thin);

@@ -316,6 +316,8 @@ static void demi_persistent_respond(dem_world *w, int d) {
             domain->persistent_walls += c->b < 0;
             continue;
         }
+        /* else of all bodies, by >>persistent */
+        if (w->bodies.shaped && !w->effects.unlike) demi_yields_turn(w, c->a, c->a + 1);
         demi_persistent_add(&tile, c, old, demi_persistent_past(w, now, c),
                             demi_persistent_row(w, d, c, old, known && old != c));
         demi_persistent_count(w, d, c, c->from < 0 || !(old->overlap > 0));

@@ -769,9 +769,10 @@ static void demi_domain_persistent_touch(dem_world *w, int d) {
     own.end = cross.end = ellipsoids ? 0 : INT_MAX;
     own.next = own.count = cross.next = cross.count = 0;
     own.old = cross.old = old;
+    own.of = cross.of = -1;
     domain->persistent_next = domain->persistent_same = 0;
     domain->overflow &= ~16;
-    if (w->effects.clustered || (w->bodies.shaped && demi_response_is(w, DEMI_LAWS)))
+    if (w->effects.clustered || (w->effects.unlike && demi_response_is(w, DEMI_LAWS)))
         demi_balls_place(w, domain->begin, domain->end);
     for (; !(domain->overflow & 16); old = old_end) {
         while (k < walls && gap[k] > gone) k++; /* not close enough yet */
