@@ -171,7 +171,7 @@ static void demi_points_law(const dem_world *w, demi_points *t) {
     int q, rests;
     demi_who_clear(&c.who);
     for (q = 0; q < t->count; q++)
-        for (rests = t->raised[q] > 0; rests >= 0; rests--) {
+        for (t->still[q] = 0, rests = t->raised[q] > 0; rests >= 0; rests--) {
             dem_real *still = rests ? &t->still[q] : 0, m[DEMI_MEMORY];
             dem_contact_force f;
             demi_tile_own(&t->rows, &t->run, &same, q, w->desc.law_who, &c);
@@ -208,9 +208,10 @@ static void demi_points_still(demi_points *t, int full) {
 static void demi_points_aside(demi_points *t) {
     int q;
     for (q = 0; q < t->count; q++) {
-        const dem_vec3 aside = demi_scale(t->aside[q], t->still[q]);
-        const dem_vec3 far = demi_sub(t->side[1][q], demi_rows_at(&t->arm[1], q));
+        dem_vec3 aside, far;
         if (t->raised[q] < 2) continue;
+        aside = demi_scale(t->aside[q], t->still[q]);
+        far = demi_sub(t->side[1][q], demi_rows_at(&t->arm[1], q));
         demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
         demi_row_put(t->rows.moment, q, demi_add(demi_row(t->rows.moment, q),
                                                  demi_cross(far, aside)));

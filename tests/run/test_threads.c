@@ -151,7 +151,7 @@ int main(int argc, char **argv) {
                              at(3e-3*(i%30), 3e-3*(i/30%30), i < 900 ? 5.99e-4 : 4e-3 + 2e-4*(i - 900)), dem_quat_make(1, 0, 0, 0));
             CHECK_EQ(scene_step(world, 2), DEM_OK);
             for (d = 0; d < world->domain_count; d++) {
-                const int here = world->domains[d].kept_walls;
+                const int here = world->domains[d].persistent_walls;
                 all += here;
                 if (world->domain_middle[d] < 0.5) first += here;
                 if (here > most) most = here;
