@@ -4067,7 +4067,7 @@ static void demi_parallel(dem_world *w, int threads, int count, const double *mi
 #if _OPENMP >= 201107
                 #pragma omp atomic capture
 #else
-                #pragma omp critical
+                #pragma omp critical(demi_share)
 #endif
                 i = s->next++;
                 if (i >= s->end) break;
@@ -18816,8 +18816,8 @@ DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
    force. A scene runs only these, so any combination of laws costs the sum of its parts.
    --------------------------------------------------------------------------------------------- */
 
-/* Fills in `who` for a law that has desc.law_who set, for bodies a and b; b < 0: wall -1 - b. arm:
-   m, from a's centre to the contact point. */
+/* Fills in `who` for a law that has desc.law_who set, for bodies a and b with radii ra and rb, m;
+   b < 0: wall -1 - b, which has no rb. arm: m, from a's centre to the contact point. */
 static void demi_who_fill(const dem_world *w, int a, int b, dem_real ra, dem_real rb, dem_vec3 arm,
                           dem_real *rates, dem_contact_who *who) {
     const demi_periods periods = demi_periods_of(w);
@@ -18919,7 +18919,7 @@ static dem_law_rows_fn demi_own_rows(const dem_world *w) {
 #endif
     return w->desc.law_rows;
 }
-/* Passes the columns of a tile to the law, after those that stages store otherwise. */
+/* Passes the columns of a tile to the law. Those that stages store otherwise are copied first. */
 static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
     static const int energies[7] = {0, 6, 1, 2, 3, 4, 5};       /* rows of part */
     const dem_world *w = r->w;
@@ -19043,8 +19043,8 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.same.dt = dt;
     return r;
 }
-/* Returns the run for contacts of two spheres. alike: for pairs of identical bodies; it gives the
-   same bits as the general one. */
+/* Returns the run for contacts of spheres. alike: for pairs of identical bodies; it gives the same
+   bits as the general one. >>points uses all but the first stage of the general one. */
 static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     const demi_stage whole = demi_whole_stage(w, alike);
     demi_run r = demi_run_begin(w, dt);
@@ -19052,7 +19052,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     r.alike = alike;
     r.parting |= r.turning && !alike;
     r.same.radius = w->effects.species[0].radius;
-    r.same.inv_radius = 1/r.same.radius;
+    r.same.inv_radius = r.same.radius > 0 ? 1/r.same.radius : 0;
     r.stage[k++] = r.ranged ? demi_stage_mixed_ranged
         : r.following ? r.alike ? demi_stage_alike_following : demi_stage_mixed_following
         : r.turning ? r.alike ? demi_stage_alike_turning : demi_stage_mixed_turning
@@ -19142,7 +19142,8 @@ static void demi_tile_note(dem_world *w, int d, demi_tile *t, const demi_span *s
    ledger, to user-defined numbers, to a cell that deforms, and to events. A contact with a body of
    a later work group stores the force on that body in a slot; the other work group adds it once all
    are done, in list order. The order of every sum is thus independent of the number of threads.
-   Writes forces and rates of bodies, slots, sums of walls, and the sums of work groups.
+   Writes forces and rates of bodies, slots, sums of walls and of work groups, `force` of persistent
+   contacts, and notes.
    --------------------------------------------------------------------------------------------- */
 
 /* Corrects the energy that dashpots took to the velocities of the actual path. */
@@ -19294,7 +19295,7 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
 }
 /* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
-   while a has its part of all (demi_persistent_more). Over all parts, the two are the same. */
+   while a has its part of all (demi_persistent_more). The sums over all parts are equal. */
 DEM_INLINE dem_vec3 demi_point_own(const demi_points *t, int q, dem_vec3 *moment) {
     const demi_persistent *c = t->contact[q];
     const dem_vec3 force = demi_v(t->rows.force[0][q], t->rows.force[1][q], t->rows.force[2][q]);
@@ -24977,12 +24978,11 @@ static void demi_persistent_tidy(const dem_world *w, demi_persistent *c) {
 /* ---------------------------------------------------------------------------------------------
    >>points
    Forces of contacts at points of bodies: of member spheres (>>members) and persistent contacts
-   (>>persistent-respond), with bodies and walls,
-       a tile at a time. Those two fill the tile: who touches,
-   the arms from both centres to the contact, the relative motion of the centres, coefficients,
-   weights and history. A wall is a body b with zero arm: velocities are relative to its surface at
-   the contact. This part computes effective masses and the motion at the contact, evaluates the
-   laws by the stages of >>respond, and multiplies by the weights. Owns no data.
+   (>>persistent-respond), with bodies and walls, a tile at a time. Those two fill the tile: who
+   touches, the arms from both centres to the contact, the relative motion of the centres,
+   coefficients, weights and history. A wall is a body b with zero arm: velocities are relative to
+   its surface at the contact. This part computes effective masses and the motion at the contact,
+   evaluates the laws by the stages of >>respond, and multiplies by the weights. Owns no data.
    --------------------------------------------------------------------------------------------- */
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC push_options
@@ -24995,7 +24995,7 @@ DEM_INLINE dem_real demi_point_give(const demi_points *t, int side, dem_vec3 n, 
         t->yield[side][2][q]*v.z*v.z + 2*(t->yield[side][3][q]*v.x*v.y +
         t->yield[side][4][q]*v.x*v.z + t->yield[side][5][q]*v.y*v.z);
 }
-/* Effective mass m* of a contact, kg: from both bodies at the contact point, unless known. */
+/* Effective mass m* of a contact, kg: from both bodies at the ends of `felt`, unless known. */
 DEM_INLINE void demi_point_mass(demi_points *DEMI_RESTRICT t, int q) {
     const dem_vec3 n = demi_row(t->rows.normal, q);
     const dem_real known = t->known[q];
@@ -25004,7 +25004,8 @@ DEM_INLINE void demi_point_mass(demi_points *DEMI_RESTRICT t, int q) {
     t->rows.coef[DEMI_M_EFF][q] = known > 0 ? known : m;
 }
 /* Relative motion at the contact: now, and (following) averaged over the step just taken. On entry
-   `turn` is the change of the normal in this step. */
+   `turn` is the change of the normal in this step, on return its rate, 1/s; without a step (dt 0)
+   it is the rate already. */
 DEM_INLINE void demi_point_motion(demi_points *DEMI_RESTRICT t, const demi_same *s, int q,
                                   int following) {
     const dem_vec3 n = demi_row(t->rows.normal, q);
@@ -25026,9 +25027,9 @@ DEM_INLINE void demi_point_motion(demi_points *DEMI_RESTRICT t, const demi_same 
     /* the moment about the normal also does work */
     t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
     if (following) {
-        const dem_real per = s->dt > 0 ? 1/s->dt : 0;
+        const dem_real per = s->dt > 0 ? 1/s->dt : 1, half = s->dt > 0 ? DEM_R(0.5) : DEM_R(0);
         const dem_vec3 way = demi_row(t->rows.turn, q);
-        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
+        const dem_vec3 mid = demi_sub(n, demi_scale(way, half));
         const dem_vec3 sa = demi_rows_at(&t->spun[0], q), sb = demi_rows_at(&t->spun[1], q);
         const dem_vec3 turn = demi_scale(way, per);
         dem_vec3 gone = demi_sub(demi_add(demi_rows_at(&t->rows.gone, q),
@@ -25043,12 +25044,13 @@ DEM_INLINE void demi_point_motion(demi_points *DEMI_RESTRICT t, const demi_same 
 }
 /* Multiplies forces, moments and energies by their weights. The elastic energy is
    V = k overlap^2/2, while the law was given k slope. */
-DEM_INLINE void demi_point_weigh(demi_points *DEMI_RESTRICT t, int q) {
+DEM_INLINE void demi_point_weigh(demi_points *DEMI_RESTRICT t, int q, int ledger) {
     demi_tile *rows = &t->rows;
     const dem_real share = t->share[q], grip = t->grip[q], stored = share/t->slope[q];
     rows->repulsion[q] = share*rows->repulsion[q] + t->lift[q]*t->still[q];
     demi_row_put(rows->tangent, q, demi_scale(demi_row(rows->tangent, q), grip));
     demi_row_put(rows->moment, q, demi_scale(demi_row(rows->moment, q), grip));
+    if (!ledger) return;
     rows->part[0][q] *= share;
     rows->part[1][q] *= stored; rows->part[6][q] *= stored;
     rows->part[2][q] *= grip; rows->part[3][q] *= grip;
@@ -25081,7 +25083,8 @@ DEM_INLINE void demi_point_torques(demi_points *DEMI_RESTRICT t, int q, int turn
 DEMI_POINT_STAGE(demi_points_mass, demi_point_mass(t, q))
 DEMI_POINT_STAGE(demi_points_motion, demi_point_motion(t, &s, q, 0))
 DEMI_POINT_STAGE(demi_points_motion_following, demi_point_motion(t, &s, q, 1))
-DEMI_POINT_STAGE(demi_points_weigh, demi_point_weigh(t, q))
+DEMI_POINT_STAGE(demi_points_weigh, demi_point_weigh(t, q, 0))
+DEMI_POINT_STAGE(demi_points_weigh_ledger, demi_point_weigh(t, q, 1))
 DEMI_POINT_STAGE(demi_points_torques_bare, demi_point_torques(t, q, 0, 0))
 DEMI_POINT_STAGE(demi_points_torques, demi_point_torques(t, q, 1, 0))
 DEMI_POINT_STAGE(demi_points_torques_weighted, demi_point_torques(t, q, 1, 1))
@@ -25130,7 +25133,7 @@ static void demi_points_begin(const dem_world *w, demi_points *t, dem_real dt, i
     t->count = t->ready = t->turns = t->weighted = t->lifted = 0;
     for (q = 0; q < DEMI_TILE && q < rows; q++) {
         t->rows.touch[q] = 1;
-        t->rows.length[q] = t->rows.lean[q] = 0;        /* laws leave torques to this part */
+        t->rows.length[q] = t->rows.lean[q] = 0;        /* no arms: stages return moments alone */
         t->rows.memory[DEMI_MEMORY][q] = t->rows.repulsion[q] = 0;
         t->filled[q] = 0;
         t->still[q] = 0;                        /* if none is lifted */
@@ -25158,6 +25161,7 @@ static void demi_points_law(const dem_world *w, demi_points *t) {
             demi_keep(&t->rows, q, 0, t->run.keep, m);
             demi_normal_put(&t->rows, &same, q, &f, 2);
             demi_tangent_put(&t->rows, &same, q, &f, 2);
+            if (same.at_sliding == DEMI_MEMORY) t->rows.memory[DEMI_MEMORY][q] = 0;    /* of none */
             demi_rolling_put(&t->rows, &same, q, &f, 2);
         }
 }
@@ -25217,7 +25221,7 @@ static void demi_points_evaluate(const dem_world *w, demi_points *t) {
         for (k = 0; k < DEMI_STAGES && t->laws.stage[k]; k++)
             t->laws.stage[k](rows, &t->laws, full);
     }
-    demi_points_weigh(t, full);
+    (r->ledger ? demi_points_weigh_ledger : demi_points_weigh)(t, full);
     if (!r->turning) memset(rows->torque[0], 0, sizeof rows->torque[0]);
     demi_answer_choose(r, demi_laws_roll(w))(rows, r, full);
     demi_points_torques_weighted(t, full);
@@ -25441,7 +25445,8 @@ static void demi_persistent_add(demi_points *t, demi_persistent *c, const demi_p
     demi_rows_put(&t->arm[0], q, c->arm_a);
     demi_rows_put(&t->spin[0], q, demi_at(w->bodies.spin + 4*c->a));
     if (r->following) {
-        demi_row_put(t->rows.turn, q, demi_sub(c->normal, old->normal));
+        demi_row_put(t->rows.turn, q, r->same.dt > 0 ? demi_sub(c->normal, old->normal)
+                     : demi_v(0, 0, 0));
         demi_rows_put(&t->mid[0], q, mid);
         demi_rows_put(&t->spun[0], q, demi_at(w->bodies.half_spin + 4*c->a));
     }
@@ -25488,8 +25493,7 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.force + 4*body);
     DEMI_FETCH(w->bodies.torque + 4*body);
     if (!w->bodies.shaped) return;
-    DEMI_FETCH(w->bodies.orient + 4*body);
-    DEMI_FETCH(w->bodies.moment + 4*body);
+    DEMI_FETCH(w->bodies.yield + 6*body);
 }
 /* Prepares an empty tile for up to `count` contacts: see demi_points_begin. */
 static void demi_persistent_tile_begin(const dem_world *w, demi_points *t, dem_real dt, int count) {
@@ -25553,7 +25557,7 @@ static void demi_persistent_respond(dem_world *w, int d) {
             domain->persistent_walls += c->b < 0;
             continue;
         }
-        /* else of all bodies, by >>persistent */
+        /* >>persistent does this for all bodies if pairs may need it */
         if (w->bodies.shaped && !w->effects.unlike) demi_yields_turn(w, c->a, c->a + 1);
         demi_persistent_add(&tile, c, old, demi_persistent_past(w, now, c),
                             demi_persistent_row(w, d, c, old, known && old != c));
@@ -25754,8 +25758,8 @@ DEM_INLINE void demi_member_meet(demi_points *DEMI_RESTRICT t, const demi_same *
         const dem_vec3 gone = demi_add(demi_rows_at(&rows->gone, q),
                                        demi_sub(demi_cross(sa, ma), demi_cross(sb, mb)));
         const dem_vec3 way = demi_scale(demi_sub(gone, demi_scale(n, demi_dot(gone, n))),
-                                        -s->dt*rows->over_d[q]);
-        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
+                                        -(s->dt > 0 ? s->dt : 1)*rows->over_d[q]);
+        const dem_vec3 mid = demi_sub(n, demi_scale(way, s->dt > 0 ? DEM_R(0.5) : DEM_R(0)));
         demi_row_put(rows->turn, q, way);
         demi_rows_put(&t->mid[0], q, demi_add(ma, demi_scale(mid, ra)));
         demi_rows_put(&t->mid[1], q, demi_sub(mb, demi_scale(mid, rb)));

@@ -4,8 +4,8 @@
    force. A scene runs only these, so any combination of laws costs the sum of its parts.
    --------------------------------------------------------------------------------------------- */
 
-/* Fills in `who` for a law that has desc.law_who set, for bodies a and b; b < 0: wall -1 - b. arm:
-   m, from a's centre to the contact point. */
+/* Fills in `who` for a law that has desc.law_who set, for bodies a and b with radii ra and rb, m;
+   b < 0: wall -1 - b, which has no rb. arm: m, from a's centre to the contact point. */
 static void demi_who_fill(const dem_world *w, int a, int b, dem_real ra, dem_real rb, dem_vec3 arm,
                           dem_real *rates, dem_contact_who *who) {
     const demi_periods periods = demi_periods_of(w);
@@ -107,7 +107,7 @@ static dem_law_rows_fn demi_own_rows(const dem_world *w) {
 #endif
     return w->desc.law_rows;
 }
-/* Passes the columns of a tile to the law, after those that stages store otherwise. */
+/* Passes the columns of a tile to the law. Those that stages store otherwise are copied first. */
 static void demi_stage_own_rows(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
     static const int energies[7] = {0, 6, 1, 2, 3, 4, 5};       /* rows of part */
     const dem_world *w = r->w;
@@ -231,8 +231,8 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.same.dt = dt;
     return r;
 }
-/* Returns the run for contacts of two spheres. alike: for pairs of identical bodies; it gives the
-   same bits as the general one. */
+/* Returns the run for contacts of spheres. alike: for pairs of identical bodies; it gives the same
+   bits as the general one. >>points uses all but the first stage of the general one. */
 static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     const demi_stage whole = demi_whole_stage(w, alike);
     demi_run r = demi_run_begin(w, dt);
@@ -240,7 +240,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     r.alike = alike;
     r.parting |= r.turning && !alike;
     r.same.radius = w->effects.species[0].radius;
-    r.same.inv_radius = 1/r.same.radius;
+    r.same.inv_radius = r.same.radius > 0 ? 1/r.same.radius : 0;
     r.stage[k++] = r.ranged ? demi_stage_mixed_ranged
         : r.following ? r.alike ? demi_stage_alike_following : demi_stage_mixed_following
         : r.turning ? r.alike ? demi_stage_alike_turning : demi_stage_mixed_turning

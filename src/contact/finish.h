@@ -4,7 +4,8 @@
    ledger, to user-defined numbers, to a cell that deforms, and to events. A contact with a body of
    a later work group stores the force on that body in a slot; the other work group adds it once all
    are done, in list order. The order of every sum is thus independent of the number of threads.
-   Writes forces and rates of bodies, slots, sums of walls, and the sums of work groups.
+   Writes forces and rates of bodies, slots, sums of walls and of work groups, `force` of persistent
+   contacts, and notes.
    --------------------------------------------------------------------------------------------- */
 
 /* Corrects the energy that dashpots took to the velocities of the actual path. */
@@ -156,7 +157,7 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
 }
 /* Returns the force of row q on a, and sets *moment, as its wall has them: with its own pressure,
-   while a has its part of all (demi_persistent_more). Over all parts, the two are the same. */
+   while a has its part of all (demi_persistent_more). The sums over all parts are equal. */
 DEM_INLINE dem_vec3 demi_point_own(const demi_points *t, int q, dem_vec3 *moment) {
     const demi_persistent *c = t->contact[q];
     const dem_vec3 force = demi_v(t->rows.force[0][q], t->rows.force[1][q], t->rows.force[2][q]);

@@ -158,8 +158,8 @@ DEM_INLINE void demi_member_meet(demi_points *DEMI_RESTRICT t, const demi_same *
         const dem_vec3 gone = demi_add(demi_rows_at(&rows->gone, q),
                                        demi_sub(demi_cross(sa, ma), demi_cross(sb, mb)));
         const dem_vec3 way = demi_scale(demi_sub(gone, demi_scale(n, demi_dot(gone, n))),
-                                        -s->dt*rows->over_d[q]);
-        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
+                                        -(s->dt > 0 ? s->dt : 1)*rows->over_d[q]);
+        const dem_vec3 mid = demi_sub(n, demi_scale(way, s->dt > 0 ? DEM_R(0.5) : DEM_R(0)));
         demi_row_put(rows->turn, q, way);
         demi_rows_put(&t->mid[0], q, demi_add(ma, demi_scale(mid, ra)));
         demi_rows_put(&t->mid[1], q, demi_sub(mb, demi_scale(mid, rb)));

@@ -204,7 +204,8 @@ static void demi_persistent_add(demi_points *t, demi_persistent *c, const demi_p
     demi_rows_put(&t->arm[0], q, c->arm_a);
     demi_rows_put(&t->spin[0], q, demi_at(w->bodies.spin + 4*c->a));
     if (r->following) {
-        demi_row_put(t->rows.turn, q, demi_sub(c->normal, old->normal));
+        demi_row_put(t->rows.turn, q, r->same.dt > 0 ? demi_sub(c->normal, old->normal)
+                     : demi_v(0, 0, 0));
         demi_rows_put(&t->mid[0], q, mid);
         demi_rows_put(&t->spun[0], q, demi_at(w->bodies.half_spin + 4*c->a));
     }
@@ -251,8 +252,7 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.force + 4*body);
     DEMI_FETCH(w->bodies.torque + 4*body);
     if (!w->bodies.shaped) return;
-    DEMI_FETCH(w->bodies.orient + 4*body);
-    DEMI_FETCH(w->bodies.moment + 4*body);
+    DEMI_FETCH(w->bodies.yield + 6*body);
 }
 /* Prepares an empty tile for up to `count` contacts: see demi_points_begin. */
 static void demi_persistent_tile_begin(const dem_world *w, demi_points *t, dem_real dt, int count) {
@@ -316,7 +316,7 @@ static void demi_persistent_respond(dem_world *w, int d) {
             domain->persistent_walls += c->b < 0;
             continue;
         }
-        /* else of all bodies, by >>persistent */
+        /* >>persistent does this for all bodies if pairs may need it */
         if (w->bodies.shaped && !w->effects.unlike) demi_yields_turn(w, c->a, c->a + 1);
         demi_persistent_add(&tile, c, old, demi_persistent_past(w, now, c),
                             demi_persistent_row(w, d, c, old, known && old != c));

@@ -1,12 +1,11 @@
 /* ---------------------------------------------------------------------------------------------
    >>points
    Forces of contacts at points of bodies: of member spheres (>>members) and persistent contacts
-   (>>persistent-respond), with bodies and walls,
-       a tile at a time. Those two fill the tile: who touches,
-   the arms from both centres to the contact, the relative motion of the centres, coefficients,
-   weights and history. A wall is a body b with zero arm: velocities are relative to its surface at
-   the contact. This part computes effective masses and the motion at the contact, evaluates the
-   laws by the stages of >>respond, and multiplies by the weights. Owns no data.
+   (>>persistent-respond), with bodies and walls, a tile at a time. Those two fill the tile: who
+   touches, the arms from both centres to the contact, the relative motion of the centres,
+   coefficients, weights and history. A wall is a body b with zero arm: velocities are relative to
+   its surface at the contact. This part computes effective masses and the motion at the contact,
+   evaluates the laws by the stages of >>respond, and multiplies by the weights. Owns no data.
    --------------------------------------------------------------------------------------------- */
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC push_options
@@ -19,7 +18,7 @@ DEM_INLINE dem_real demi_point_give(const demi_points *t, int side, dem_vec3 n, 
         t->yield[side][2][q]*v.z*v.z + 2*(t->yield[side][3][q]*v.x*v.y +
         t->yield[side][4][q]*v.x*v.z + t->yield[side][5][q]*v.y*v.z);
 }
-/* Effective mass m* of a contact, kg: from both bodies at the contact point, unless known. */
+/* Effective mass m* of a contact, kg: from both bodies at the ends of `felt`, unless known. */
 DEM_INLINE void demi_point_mass(demi_points *DEMI_RESTRICT t, int q) {
     const dem_vec3 n = demi_row(t->rows.normal, q);
     const dem_real known = t->known[q];
@@ -28,7 +27,8 @@ DEM_INLINE void demi_point_mass(demi_points *DEMI_RESTRICT t, int q) {
     t->rows.coef[DEMI_M_EFF][q] = known > 0 ? known : m;
 }
 /* Relative motion at the contact: now, and (following) averaged over the step just taken. On entry
-   `turn` is the change of the normal in this step. */
+   `turn` is the change of the normal in this step, on return its rate, 1/s; without a step (dt 0)
+   it is the rate already. */
 DEM_INLINE void demi_point_motion(demi_points *DEMI_RESTRICT t, const demi_same *s, int q,
                                   int following) {
     const dem_vec3 n = demi_row(t->rows.normal, q);
@@ -50,9 +50,9 @@ DEM_INLINE void demi_point_motion(demi_points *DEMI_RESTRICT t, const demi_same 
     /* the moment about the normal also does work */
     t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
     if (following) {
-        const dem_real per = s->dt > 0 ? 1/s->dt : 0;
+        const dem_real per = s->dt > 0 ? 1/s->dt : 1, half = s->dt > 0 ? DEM_R(0.5) : DEM_R(0);
         const dem_vec3 way = demi_row(t->rows.turn, q);
-        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
+        const dem_vec3 mid = demi_sub(n, demi_scale(way, half));
         const dem_vec3 sa = demi_rows_at(&t->spun[0], q), sb = demi_rows_at(&t->spun[1], q);
         const dem_vec3 turn = demi_scale(way, per);
         dem_vec3 gone = demi_sub(demi_add(demi_rows_at(&t->rows.gone, q),
@@ -67,12 +67,13 @@ DEM_INLINE void demi_point_motion(demi_points *DEMI_RESTRICT t, const demi_same 
 }
 /* Multiplies forces, moments and energies by their weights. The elastic energy is
    V = k overlap^2/2, while the law was given k slope. */
-DEM_INLINE void demi_point_weigh(demi_points *DEMI_RESTRICT t, int q) {
+DEM_INLINE void demi_point_weigh(demi_points *DEMI_RESTRICT t, int q, int ledger) {
     demi_tile *rows = &t->rows;
     const dem_real share = t->share[q], grip = t->grip[q], stored = share/t->slope[q];
     rows->repulsion[q] = share*rows->repulsion[q] + t->lift[q]*t->still[q];
     demi_row_put(rows->tangent, q, demi_scale(demi_row(rows->tangent, q), grip));
     demi_row_put(rows->moment, q, demi_scale(demi_row(rows->moment, q), grip));
+    if (!ledger) return;
     rows->part[0][q] *= share;
     rows->part[1][q] *= stored; rows->part[6][q] *= stored;
     rows->part[2][q] *= grip; rows->part[3][q] *= grip;
@@ -105,7 +106,8 @@ DEM_INLINE void demi_point_torques(demi_points *DEMI_RESTRICT t, int q, int turn
 DEMI_POINT_STAGE(demi_points_mass, demi_point_mass(t, q))
 DEMI_POINT_STAGE(demi_points_motion, demi_point_motion(t, &s, q, 0))
 DEMI_POINT_STAGE(demi_points_motion_following, demi_point_motion(t, &s, q, 1))
-DEMI_POINT_STAGE(demi_points_weigh, demi_point_weigh(t, q))
+DEMI_POINT_STAGE(demi_points_weigh, demi_point_weigh(t, q, 0))
+DEMI_POINT_STAGE(demi_points_weigh_ledger, demi_point_weigh(t, q, 1))
 DEMI_POINT_STAGE(demi_points_torques_bare, demi_point_torques(t, q, 0, 0))
 DEMI_POINT_STAGE(demi_points_torques, demi_point_torques(t, q, 1, 0))
 DEMI_POINT_STAGE(demi_points_torques_weighted, demi_point_torques(t, q, 1, 1))
@@ -154,7 +156,7 @@ static void demi_points_begin(const dem_world *w, demi_points *t, dem_real dt, i
     t->count = t->ready = t->turns = t->weighted = t->lifted = 0;
     for (q = 0; q < DEMI_TILE && q < rows; q++) {
         t->rows.touch[q] = 1;
-        t->rows.length[q] = t->rows.lean[q] = 0;        /* laws leave torques to this part */
+        t->rows.length[q] = t->rows.lean[q] = 0;        /* no arms: stages return moments alone */
         t->rows.memory[DEMI_MEMORY][q] = t->rows.repulsion[q] = 0;
         t->filled[q] = 0;
         t->still[q] = 0;                        /* if none is lifted */
@@ -182,6 +184,7 @@ static void demi_points_law(const dem_world *w, demi_points *t) {
             demi_keep(&t->rows, q, 0, t->run.keep, m);
             demi_normal_put(&t->rows, &same, q, &f, 2);
             demi_tangent_put(&t->rows, &same, q, &f, 2);
+            if (same.at_sliding == DEMI_MEMORY) t->rows.memory[DEMI_MEMORY][q] = 0;    /* of none */
             demi_rolling_put(&t->rows, &same, q, &f, 2);
         }
 }
@@ -241,7 +244,7 @@ static void demi_points_evaluate(const dem_world *w, demi_points *t) {
         for (k = 0; k < DEMI_STAGES && t->laws.stage[k]; k++)
             t->laws.stage[k](rows, &t->laws, full);
     }
-    demi_points_weigh(t, full);
+    (r->ledger ? demi_points_weigh_ledger : demi_points_weigh)(t, full);
     if (!r->turning) memset(rows->torque[0], 0, sizeof rows->torque[0]);
     demi_answer_choose(r, demi_laws_roll(w))(rows, r, full);
     demi_points_torques_weighted(t, full);

@@ -99,7 +99,7 @@ static void demi_parallel(dem_world *w, int threads, int count, const double *mi
 #if _OPENMP >= 201107
                 #pragma omp atomic capture
 #else
-                #pragma omp critical
+                #pragma omp critical(demi_share)
 #endif
                 i = s->next++;
                 if (i >= s->end) break;
