@@ -37,7 +37,7 @@ hash := \#
 HAVE_PYTHON := $(if $(filter python-check,$(MAKECMDGOALS)),$(shell command -v $(PYTHON)))
 
 # ---- options that the compiler knows; tested only if something is to be compiled ----
-ifneq ($(filter-out help new clean tags english pages-check rooms recipes viewer web check coverage fuzz docs options python site,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help new clean tags english pages-check rooms recipes upgrade-check viewer web check coverage fuzz docs options python site,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp build/rooms build/obj)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -61,7 +61,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help help-all all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law verdicts marks lessons web site examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets clean
+.PHONY: help help-all all run new install python python-check rooms test hard coverage mutants relations relations-sanitized law verdicts marks lessons web site examples shows studies studies-check mpi check bench bench-compile bench-instructions bench-parallel bench-peers peers-check bench-pages pages pages-check fuzz docs readers viewer browser tags english options pages-check recipes snippets upgrade-check clean
 .DEFAULT_GOAL := help
 
 # a target with `## TEXT` is in both lists, one with `### TEXT` in the long one; the short list ends TEXT at `;` or `:`
@@ -258,6 +258,9 @@ browser: build/write_replays ### play replays in a headless chromium: frames, pi
 
 recipes: ### apply the patches of docs/extending*.md to a copy of dem.h and use the result
 	@CC="$(CC)" sh tests/recipes.sh
+
+upgrade-check: ### test examples/upgrade.sh: tables against the public names, programs of users; LONG=1: and their results
+	@CC="$(CC)" sh tests/upgrade.sh $(if $(LONG),long)
 
 snippets: build/dem.o ### compile the programs in dem.h's manual and in the pages; run those of docs/how_to*.md and compare what they print
 	@rm -rf build/snippets && mkdir -p build/snippets

@@ -1,16 +1,16 @@
 # The part of examples/upgrade.sh that rewrites. It reads the rows of upgrade.txt, looks at all files for variables and
-# members of structs (pass 1), and writes each file with present names (pass 2): of file k the text to TO/k.new, and what
-# is left to the user to TO/k.notes, a line per place. TABLE, TO and OPEN (numbers of the files whose last line does not
-# end) are variables of the environment.
+# members of structs (pass 1), and writes each file with present names (pass 2): of file k the text to TO/k.new, and
+# what is left to the user to TO/k.notes, a line per place. TABLE, TO and OPEN (numbers of the files whose last line
+# does not end) are variables of the environment.
 #
-# A file is a list of tokens: kind[i], text[i], row[i] (its line). Kinds: i identifier, d number, p punctuation, s string
-# or character, c comment, w blanks, n end of a line, x untouched. Tokens of the kinds i, d, p, s count; before[i] and after[i] are
-# the neighbours of token i that count, and mate[i] of a bracket is the other one.
+# A file is a list of tokens: kind[i], text[i], row[i] (its line). Kinds: i identifier, d number, p punctuation,
+# s string or character, c comment, w blanks, n end of a line, x untouched. Tokens of the kinds i, d, p and s count;
+# before[i] and after[i] are the neighbours of token i that count, and mate[i] of a bracket is the other one.
 BEGIN {
     table(ENVIRON["TABLE"])
-    n = split("return else goto case sizeof new delete throw typename using namespace if while for switch do operator " \
-        "template public private protected default break continue not and or defined include define ifdef ifndef endif " \
-        "elif undef pragma error line co_return co_await co_yield alignof decltype typeof", word, " ")
+    n = split("return else goto case sizeof new delete throw typename using namespace if while for switch do " \
+        "operator template public private protected default break continue not and or defined include define " \
+        "ifdef ifndef endif elif undef pragma error line co_return co_await co_yield alignof decltype", word, " ")
     for (i = 1; i <= n; i++) not_type[word[i]]
     n = split("const volatile static extern register inline constexpr mutable restrict __restrict struct union class " \
         "typedef thread_local _Thread_local", word, " ")
@@ -29,6 +29,9 @@ function table(path,    line, part, n, code, kind_of, remedy, at, number) {
         number++
         sub(/\r$/, "", line)
         if (line ~ /^[ \t]*(#|$)/) continue
+        while (sub(/ *\\$/, "", line) && (getline remedy < path) > 0) {
+            number++; sub(/^[ \t]*/, " ", remedy); sub(/\r$/, "", remedy); line = line remedy
+        }
         remedy = ""
         if ((at = index(line, " :: ")) > 0) { remedy = substr(line, at + 4); line = substr(line, 1, at - 1) }
         n = split(line, part, " "); kind_of = part[1]
@@ -66,6 +69,7 @@ function call_row(line, remedy,    at, pattern, name, part, n, i) {
     name = substr(pattern, 1, at - 1); pattern = substr(pattern, at + 1); sub(/\)$/, "", pattern)
     call_name[++calls] = name; call_new[calls] = line; call_said[calls] = remedy
     rows_of[name] = rows_of[name] " " calls
+    if (index(line, name "(") == 1) still[name]                          # the name of a present function
     call_args[calls] = n = split(pattern, part, ",")
     for (i = 1; i <= n; i++) call_arg[calls, i] = part[i]
 }
@@ -116,7 +120,8 @@ function scan(line,    e, c, open_end) {
             if (e) { e += length(raw) - 1; raw = "" } else e = length(line)
             token("x", substr(line, 1, e)); line = substr(line, e + 1)
         } else if (in_string || c == "\"") {
-            if (!in_string && count && kind[count] == "i" && text[count] ~ /^(u8|u|U|L)?R$/ && (e = index(line, "(")) > 0) {
+            e = index(line, "(")
+            if (!in_string && e && kind[count] == "i" && text[count] ~ /^(u8|u|U|L)?R$/) {
                 raw = ")" substr(line, 2, e - 2) "\""
                 token("x", substr(line, 1, e)); line = substr(line, e + 1)
                 continue
@@ -127,11 +132,13 @@ function scan(line,    e, c, open_end) {
             if (in_string || e < 1) e = length(line)
             token("s", substr(line, 1, e)); line = substr(line, e + 1)
         } else if (c == "'") {
-            match(line, /^'([^'\\]|\\.)*'?/)
-            token("s", substr(line, 1, RLENGTH)); line = substr(line, RLENGTH + 1)
-        } else if (match(line, /^[A-Za-z_][A-Za-z0-9_]*/)) { token("i", substr(line, 1, RLENGTH)); line = substr(line, RLENGTH + 1) }
-        else if (match(line, /^[ \t\r\f\v]+/)) { token("w", substr(line, 1, RLENGTH)); line = substr(line, RLENGTH + 1) }
-        else if (match(line, /^\.?[0-9]([eEpP][-+]|[0-9A-Za-z_.]|'[0-9A-Za-z])*/)) {
+            e = match(line, /^'([^'\\]|\\.)*'/) && RLENGTH < 13 ? RLENGTH : 1     # or an apostrophe in a text
+            token(e > 1 ? "s" : "p", substr(line, 1, e)); line = substr(line, e + 1)
+        } else if (match(line, /^[A-Za-z_][A-Za-z0-9_]*/)) {
+            token("i", substr(line, 1, RLENGTH)); line = substr(line, RLENGTH + 1)
+        } else if (match(line, /^[ \t\r\f\v]+/)) {
+            token("w", substr(line, 1, RLENGTH)); line = substr(line, RLENGTH + 1)
+        } else if (match(line, /^\.?[0-9]([eEpP][-+]|[0-9A-Za-z_.]|'[0-9A-Za-z])*/)) {
             token("d", substr(line, 1, RLENGTH)); line = substr(line, RLENGTH + 1)
         } else if (substr(line, 1, 2) == "//") { token("c", line); in_line = open_end; return }
         else if (substr(line, 1, 2) == "/*") {
@@ -149,7 +156,8 @@ function scan(line,    e, c, open_end) {
 # --- types of variables, members and functions, and fields. collect: 1 notes only what other files may use
 
 function declarations(collect,    i, t) {
-    split("", type_at); split("", any_type); split("", field_do); split("", noted); split("", notes); split("", type_of_token); split("", seen_type)
+    split("", type_at); split("", any_type); split("", type_of_token); split("", seen_type)
+    split("", field_do); split("", noted); split("", notes)
     depth_now = parens = note_count = 0
     for (i = first; i; i = after[i]) {
         t = text[i]
@@ -157,8 +165,8 @@ function declarations(collect,    i, t) {
             if (!(i in type_of_token)) declared(i, collect)
             if (!collect) field(i)
             if (!collect && parens && text[after[i]] ~ /^[,)]$/) seen_type[i] = expression(i)
-            if (t == "typedef" && kind[after[i]] == "i" && text[after[i]] ~ /^dem_/ && text[after[after[i]]] !~ /^[{*(]$/ && \
-                kind[after[after[i]]] == "i") alias[text[after[after[i]]]] = present(text[after[i]])
+            if (t == "typedef" && text[after[i]] ~ /^dem_/ && kind[after[after[i]]] == "i")
+                alias[text[after[after[i]]]] = present(text[after[i]])
         } else if (kind[i] != "p") continue
         else if (t == "(") parens++
         else if (t == ")") { if (parens) parens-- }
@@ -197,20 +205,25 @@ function declared(i, collect,    p, q, t, stars, name, type, tagged, inner) {
         type_of_token[q]
         if (text[p] == "(" && !stars_paren(p)) { if (!(name in returns) || returns[name] == type) returns[name] = type }
         if (depth_now && block[depth_now] == "struct" && !parens)
-            member[name] = !(name in member) || member[name] == type ? type : "?"
+            same(member, name, type)
         else {
             inner = parens ? depth_now + 1 : depth_now
             if (!((name, inner) in type_at)) names_at[inner] = names_at[inner] " " name
             type_at[name, inner] = type
-            any_type[name] = !(name in any_type) || any_type[name] == type ? type : "?"
-            if (collect && !inner) global[name] = !(name in global) || global[name] == type ? type : "?"
+            same(any_type, name, type)
+            if (collect && !inner) same(global, name, type)
         }
         while (p && text[p] !~ /^[;,)}]$/) p = (p in mate) && mate[p] > p ? after[mate[p]] : after[p]
         if (text[p] != ",") return
         for (q = after[p]; text[q] ~ /^[*&]$/ || text[q] == "const"; q = after[q]) { }
-        if (kind[q] != "i" || text[after[q]] == "" || !index("=;,[)", text[after[q]]) || parens && text[after[q]] == ")") return
-        if (text[after[q]] == "," && parens) return
+        if (kind[q] != "i" || text[after[q]] == "" || !index("=;,[)", text[after[q]])) return
+        if (parens && text[after[q]] ~ /^[,)]$/) return
     }
+}
+# notes the type of a name; "?" if it has two
+function same(types, name, type) {
+    if (!(name in types)) types[name] = type
+    else if (types[name] != type) types[name] = "?"
 }
 function stars_paren(p) { return text[after[p]] == "*" }
 function variable(name,    d) {
@@ -230,7 +243,8 @@ function expression(j,    p, q) {
     if (text[j] != ")" || !(j in mate)) return ""
     p = mate[j]; q = before[p]
     if (kind[q] == "i" && !(text[q] in not_type)) return text[q] in returns ? known(returns[text[q]]) : ""
-    if (text[after[p]] == "(" && (after[p] in mate) && (q = cast(after[p])) != "") return q
+    for (p = after[p]; text[p] == "*" || text[p] == "&"; p = after[p]) { }
+    if (text[p] == "(" && (p in mate) && (q = cast(p)) != "") return q
     return expression(before[j])
 }
 # the type in the parentheses that begin with token p if they hold a type and nothing else, as those of casts
@@ -250,7 +264,8 @@ function opened(i,    p, q, kind_of, type, array, c) {
         kind_of = "init"
         for (q = before[p]; text[q] == "]" && (q in mate); q = before[mate[q]]) array = 1
         if (kind[q] == "i")
-            type = text[before[q]] == "." && depth_now && block[depth_now] == "init" ? (text[q] in member ? known(member[text[q]]) : "") : variable(text[q])
+            type = text[before[q]] != "." || !depth_now || block[depth_now] != "init" ? variable(text[q]) : \
+                text[q] in member ? known(member[text[q]]) : ""
         else if (array && depth_now) { type = init_type[depth_now]; array = 0 }
     } else if (text[p] == ")" && (p in mate) && kind[before[mate[p]]] != "i" && (c = cast(mate[p])) != "") {
         kind_of = "init"; type = c; array = text[before[p]] == "]"
@@ -278,7 +293,7 @@ function field(i,    p, t, type, part, n, k, near) {
     t = text[i]
     if (!(t in is_field)) return
     p = before[i]
-    if (text[p] == "." && (text[before[p]] == "{" || text[before[p]] == ",") && !parens) {       # .field = in an initialiser
+    if (text[p] == "." && text[before[p]] ~ /^[{,]$/ && !parens) {       # .field = in an initialiser
         if (block[depth_now] != "init") return
         type = init_type[depth_now]
         if (type == "" && depth_now) { unknown_field(i); return }
@@ -287,13 +302,15 @@ function field(i,    p, t, type, part, n, k, near) {
             if (to_field[type, t] == "") note(i, t, to_said[type, t])
             else if (already(i, to_field[type, t]) || (index(to_field[type, t], t ".") == 1 && text[near] == "=" && \
                      text[after[near]] == "{")) return
-            else if (cplusplus && index(to_field[type, t], ".")) note(i, t, "In C++ write " nested(to_field[type, t]) " in place of ." t " = ...")
+            else if (cplusplus && index(to_field[type, t], "."))
+                note(i, t, "In C++ write " nested(to_field[type, t]) " in place of ." t " = ....")
             else field_do[i] = to_field[type, t]
         }
         return
     }
     if (text[p] == "." || text[p] == "->") type = expression(before[p])
-    else if (text[p] == "," && text[before[before[p]]] == "(" && text[before[before[before[p]]]] == "offsetof") type = present(text[before[p]])
+    else if (text[p] == "," && text[before[before[p]]] == "(" && text[before[before[before[p]]]] == "offsetof")
+        type = present(text[before[p]])
     else return
     if (type == "") { unknown_field(i); return }
     if (!((type, t) in to_field)) return
@@ -320,12 +337,22 @@ function already(i, path,    part, n, k) {
     }
     return 1
 }
+# whether token i is the end of path already
+function ends(i, path,    part, n, k) {
+    n = split(path, part, ".")
+    if (n < 2) return 0
+    for (k = n; k >= 1; k--) {
+        if (text[i] != part[k]) return 0
+        i = before[before[i]]
+    }
+    return 1
+}
 function unknown_field(i,    part, n, k, to, t, said_one) {
     t = text[i]
     n = split(is_field[t], part, " ")
     for (k = 1; k <= n; k++) {
         to = to_field[present(part[k]), t]
-        if (to != "" && already(i, to)) return
+        if (to != "" && (already(i, to) || ends(i, to))) return
         said_one = said_one (k > 1 ? " " : "") "If this is a field of " present(part[k]) ", " \
             (to != "" ? "write ." to "." : "then: " to_said[present(part[k]), t])
     }
@@ -381,7 +408,7 @@ function emit(i, to,    t, s, m) {
             if (m <= to && (s = call(i, m)) != "") { next_token = m + 1; changes++; return s }
             next_token = i + 1
             if (t in fallback) note(i, t, fallback[t])
-        } else note(i, t, t in fallback ? fallback[t] : "This function has other arguments now. Rewrite its use without a call.")
+        } else if (!(t in still)) note(i, t, t in fallback ? fallback[t] : "This function has other arguments now. Adapt its use here.")
     }
     if (t in gone) { note(i, t, gone[t]); return t }
     if (renamed(t)) {
@@ -403,11 +430,14 @@ function inside(s, is_string,    out, name, b, a) {
         name = substr(s, RSTART, RLENGTH); b = RSTART > 1 ? substr(s, RSTART - 1, 1) : substr(out, length(out))
         a = substr(s, RSTART + RLENGTH, 2)
         out = out substr(s, 1, RSTART - 1); s = substr(s, RSTART + RLENGTH)
-        if (name ~ /^(dem|DEM)_/ && renamed(name) && b !~ /[0-9]/ && !(is_string && (b ~ /[\/.-]/ || a ~ /^[\/-]/ || a ~ /^\.[A-Za-z0-9]/))) {
+        if (name ~ /^(dem|DEM)_/ && renamed(name) && b !~ /[0-9]/ && !(is_string && file_name(b, a))) {
             changes++; out = out new_name[name]
         } else out = out name
     }
     return out s
+}
+function file_name(b, a) {
+    return b != "" && index("/.-", b) || a ~ /^[.][A-Za-z0-9]/ || a ~ /^-/ || substr(a, 1, 1) == "/"
 }
 # the text of the call whose name is token i and whose last parenthesis is token m by the first row that fits, or ""
 function call(i, m,    from, end, n, part, k, j, rows, got, lead, body, trail, p, q, r, bound) {
@@ -435,7 +465,8 @@ function call(i, m,    from, end, n, part, k, j, rows, got, lead, body, trail, p
     if (call_said[r] != "" && !((text[i], r) in told)) { told[text[i], r]; note(i, text[i], call_said[r]) }
     return filled(r, n, bound, lead, body, trail)
 }
-# whether the n arguments fit row r. bound[k] is the argument that is $k, got[j] is "&" if the row takes what follows the &
+# whether the n arguments fit row r. bound[k] is the argument that is $k; got[j] is "&" if the row takes what follows
+# the &
 function fits(r, n, from, end, got, bound,    j, k, want, p, q, s, type) {
     split("", got); split("", bound)
     for (j = 1; j <= call_args[r]; j++) {
@@ -469,7 +500,8 @@ function argument(p, q) {
     while (text[p] == "&" || text[p] == "*") p = after[p]
     if (text[p] == "(" && (p in mate) && text[after[mate[p]]] == "{") return cast(p)
     if (kind[p] == "i" && text[after[p]] == "{" && struct_type(text[p])) return present(text[p])
-    if (kind[p] == "i" && text[after[p]] == "(" && mate[after[p]] == q && (text[p] in returns)) return known(returns[text[p]])
+    if (kind[p] == "i" && text[after[p]] == "(" && mate[after[p]] == q && (text[p] in returns))
+        return known(returns[text[p]])
     return (q in seen_type) ? seen_type[q] : ""
 }
 function filled(r, n, bound, lead, body, trail,    s, out, j, k) {
@@ -484,7 +516,8 @@ function filled(r, n, bound, lead, body, trail,    s, out, j, k) {
 }
 function put(out, j, lead, body, trail,    l) {
     l = lead[j]
-    if (substr(out, length(out)) == "(") return out (l ~ /[^ \t]/ ? l : "") body[j] (trail[j] ~ /[^ \t]/ ? trail[j] : "")
+    if (substr(out, length(out)) == "(")
+        return out (l ~ /[^ \t]/ ? l : "") body[j] (trail[j] ~ /[^ \t]/ ? trail[j] : "")
     if (l != "" && substr(out, length(out) - 1) == ", ") out = substr(out, 1, length(out) - 1) l
     else if (l ~ /[^ \t\r\n]/) out = out l
     return out body[j] (trail[j] ~ /[^ \t]/ ? trail[j] : "")

@@ -1,34 +1,36 @@
 #!/bin/sh
-# sh examples/upgrade.sh [--check] [--no-orig] FILE...: rewrites programs in C or C++ that were written for dem.h 0.1.0, or
-# for a version since, to the names and calls of the present dem.h.
+# sh examples/upgrade.sh [--check] [--no-orig] FILE...: rewrites programs in C or C++ that were written for dem.h 0.1.0,
+# or for a version since, to the names and calls of the present dem.h.
 #
 #   --check      changes no file: prints a diff
-#   --no-orig    keeps no copy; otherwise the text before is kept in FILE.orig, which must not be there yet
+#   --no-orig    keeps no copy; otherwise FILE.orig keeps the text before, and must not exist yet
 #
-# Give all files of a program together: a variable of one file may be a member of a struct in another. For every place that
-# the script cannot rewrite it prints FILE:LINE: NAME: and what to do, to standard error. A second run changes nothing.
+# Give all files of a program together, so that the types of members and variables that one file declares are known in
+# the others. For every place that the script cannot rewrite it prints FILE:LINE: NAME: and what to do, to standard
+# error. A second run changes nothing.
 # Exit codes: 0, all is done (--check: nothing would change); 1, something is left to you (--check: or would change);
-# 2, a file cannot be read or written, or a wrong option.
+# 2, a file cannot be read or written, or an option is unknown.
 #
-# The tables are in upgrade.txt beside this script, one row a line; `#` begins a comment line. REMEDY is a sentence.
+# The tables are in upgrade.txt beside this script, one row a line. `#` begins a comment line, `\` at the end of a line
+# continues the row. REMEDY is a sentence.
 #
-#   name OLD NEW [HEADER]            an identifier; with HEADER only in files that include HEADER. Public names (dem_, DEM_)
-#                                    are renamed in comments and strings too
-#   call OLD($1, $2) => NEW($2, 0)   a call, by the first row of OLD whose arguments fit. $1 is any argument, $* all further
-#                                    ones; &$1 only an argument that begins with &, which $1 leaves out; $1:TYPE only one
-#                                    whose type is TYPE or a pointer to it; other text is that text. NEW is any text
-#   call OLD :: REMEDY               for calls of OLD that no row fits
+#   name OLD NEW [HEADER]            an identifier; with HEADER only in files that include HEADER. Names that begin with
+#                                    dem_ or DEM_ are renamed in comments and strings too
+#   call OLD($1, $2) => NEW($2, 0)   a call, by the first row of OLD whose arguments fit. NEW is any text. $1 fits any
+#                                    argument, $* all that follow, &$1 an argument that begins with & ($1 is the rest),
+#                                    $1:TYPE an argument of this type or a pointer to it, other text only itself
+#   call OLD :: REMEDY               calls of OLD that no row fits
 #   field STRUCT OLD NEW             a field of variables, pointers, members and results of this type, and `.OLD =` in
 #                                    their initialisers. NEW may be a path, such as laws.normal
 #   field STRUCT OLD :: REMEDY       a field that is gone
 #   gone NAME :: REMEDY              a name that is gone
 #   order STRUCT :: REMEDY           initialisers of this type that list values in order
-#   check NAME :: REMEDY             a name whose meaning changed: told once in each file in which another row rewrote
-#   member FIELD TYPE                the type of a field, for rows of `field` and $1:TYPE
-#   returns FUNCTION TYPE            the type that a function returns
+#   check NAME :: REMEDY             a name whose meaning changed: printed once per file in which another row rewrote
+#   member FIELD TYPE                the type of a field of dem.h, for rows of `field` and $1:TYPE
+#   returns FUNCTION TYPE            the type that a function of dem.h returns
 #
-# Rows of `name`, `call` and `field` may end with `:: REMEDY` too: the place is rewritten, and REMEDY printed.
-# A new name must not be an old one, and a row of `call` must not fit its own result: tests/upgrade.sh looks at this.
+# Rows of `name`, `call` and `field` may end with `:: REMEDY` too: the script rewrites the place and prints REMEDY.
+# A new name must not be an old one, and a row of `call` must not fit its own result. tests/upgrade.sh checks both.
 LC_ALL=C; export LC_ALL
 here=$(dirname -- "$0")
 check=; keep=1
@@ -44,35 +46,36 @@ while :; do
 done
 [ $# -gt 0 ] || { echo "upgrade.sh: no file is given; use: sh $0 [--check] [--no-orig] FILE..." >&2; exit 2; }
 writable() { [ -w "$1" ] && [ -n "$(find -L "$1" -prune -perm -u+w)" ]; }
+first=1
+for file in "$@"; do                              # a name that begins with - is no option
+    [ $first = 1 ] && set --; first=0
+    case $file in -*) file=./$file ;; esac
+    set -- "$@" "$file"
+done
 bad=0
 refuse() { echo "upgrade.sh: $1" >&2; bad=2; }
 for file in "$@"; do
     if [ -d "$file" ]; then refuse "$file is a folder; give names of files"
     elif [ ! -e "$file" ]; then refuse "$file does not exist; correct its name"
     elif [ ! -r "$file" ]; then refuse "$file cannot be read; allow it with chmod u+r"
-    elif [ -z "$check" ] && ! writable "$file"; then refuse "$file is read-only; allow writing with chmod u+w, or use --check"
-    elif [ -z "$check$keep" ] || [ -n "$check" ] || [ ! -e "$file.orig" ]; then :
+    elif [ -z "$check" ] && ! writable "$file"; then
+        refuse "$file is read-only; allow writing with chmod u+w, or use --check"
+    elif [ "$check" ] || [ -z "$keep" ] || [ ! -e "$file.orig" ]; then :
     else refuse "$file.orig exists; move it away, or use --no-orig"; fi
 done
 [ $bad = 0 ] || exit $bad
 TABLE=$here/upgrade.txt; TO=$(mktemp -d "${TMPDIR:-/tmp}/upgrade.XXXXXX") || exit 2; OPEN=; number=0
 trap 'rm -rf "$TO"' 0
 trap 'exit 2' 1 2 15
-first=1
-for file in "$@"; do                              # a name that begins with - or holds = is no option to awk
-    [ $first = 1 ] && set --; first=0
-    case $file in /*) ;; *) file=./$file ;; esac
-    set -- "$@" "$file"; number=$((number + 1))
-    [ -z "$(tail -c 1 "$file")" ] || OPEN="$OPEN $number"
-done
+for file in "$@"; do number=$((number + 1)); [ -z "$(tail -c 1 "$file")" ] || OPEN="$OPEN $number"; done
 export TABLE TO OPEN
 ${AWK:-awk} -f "$here/upgrade.awk" "$@" >&2 || exit 2
 number=0; code=0
 for file in "$@"; do
-    number=$((number + 1)); name=${file#./}
+    number=$((number + 1)); name=$file
     [ -f "$TO/$number.count" ] || { refuse "$name: awk gave no result"; exit 2; }
     read -r changes left < "$TO/$number.count"
-    sed 's,^\./,,' "$TO/$number.notes" >&2
+    cat "$TO/$number.notes" >&2
     [ "$left" = 0 ] || code=1
     cmp -s "$file" "$TO/$number.new" && continue
     if [ "$check" ]; then

@@ -31,6 +31,7 @@ try "dem.h split into src/ and joined is dem.h" "mkdir -p \$bin && cp -r src \$b
 try "docs/options.md and docs/options_run.md are those of dem.h" "cc -I. -DDEM_STATIC -DDEM_NO_OPENMP tests/options.c -o \$bin -lm && \$bin > \$bin.txt && for part in '' _run; do awk -v part=\${part#_} -f tests/options.awk - dem.h < \$bin.txt | cmp - docs/options\$part.md || exit 1; done"
 try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.awk examples/replay/viewer.html dem.h | cmp - dem.h"
 [ "$1" = short ] || try "the exam of laws gives each law of a class its verdict" "make -s verdicts"
+try "examples/upgrade.sh: tables, programs of users" "sh tests/upgrade.sh $([ "$1" = short ] || echo long)"
 try "docs/find.md: functions that exist, with their arguments" "sh tests/find.sh"
 try "the pages in examples/web/pages are those of their sources" "sh tests/web.sh"
 if [ "$1" = short ]; then                     # the long form runs them all
