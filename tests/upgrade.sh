@@ -69,10 +69,10 @@ calls() {
 try "each row of call rewrites its call, and not the result" calls
 
 mkdir $dir/users $dir/first
-cp tests/upgrade/programs/*.* $dir/users; cp tests/upgrade/programs_0_1_0/*.c $dir/first
+cp tests/upgrade/programs/*.* $dir/users; cp tests/upgrade/programs_0_1_0/*.* $dir/first
 cp dem.h $dir/dem.h
 programs "users" $dir/users -I. -Iexamples/laws
-programs "0.1.0" $dir/first -Iexamples
+programs "0.1.0" $dir/first
 
 # --- one place of each kind, with tables of the test
 mkdir $dir/rows; cp examples/upgrade.sh examples/upgrade.awk $dir/rows
