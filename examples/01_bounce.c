@@ -8,10 +8,8 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "01_bounce", answer);
+    const int record = lesson_begin(argc, argv, "01_bounce");
     const double restitution = 0.8, height = 0.5, radius = 0.01, g = 9.81;  /* -, m, m, m/s2: change them here */
     const double rest = sqrt(2*height/g)*(1 + restitution)/(1 - restitution);   /* s, expected end of the impacts */
 
@@ -72,13 +70,15 @@ int main(int argc, char **argv) {
                   t = sqrt(2 h/g) (1 + e)/(1 - e)
    Output:    the heights of five rebounds (within 1 %) and the time at which the ball lies still (within 2 %). Impacts
               do not begin exactly at a step, hence small errors of either sign. The ball counts as still when it rises
-              more slowly than 0.02 m/s, so the measured time is a little short.
-   Exercises: check an answer with ./01_bounce --check N VALUE
-   1  A ball with e = 0.7 falls from 2 m. How high is its fifth rebound, in m?
-   2  A ball falls from 1 m and lies still after 3 s. What is its restitution? To confirm it, set `restitution` and
-      `height` at the top of main, build and run: all rows then stay within their limits. */
+              more slowly than 0.02 m/s, so the measured time is a little short. */
+/* Exercises for ./01_bounce --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "A ball with e = {0.7: 0.6 to 0.9 by 0.01} falls from {2: 1 to 3 by 0.1} m. How high is its fifth rebound, in m?",
+    "A ball falls from {1: 0.5 to 1.5 by 0.1} m and lies still after {3: 2.2 to 4.4 by 0.1} s. What is its restitution?"
+    " To confirm it, set `restitution` and `height` at the top of main, build and run: all rows keep their limits."};
 /* Marking. Stop here if you want to find the answers yourself. */
-static double answer(int exercise) {
-    const double t = 3/sqrt(2*1/9.81);                              /* in units of the time of fall: (1 + e)/(1 - e) */
-    return exercise == 1 ? 2*pow(0.7, 10) : (t - 1)/(t + 1);
+double answer(int exercise, const double *x) {
+    if (exercise == 1) return x[1]*pow(x[0], 10);
+    const double t = x[1]/sqrt(2*x[0]/9.81);                        /* in units of the time of fall: (1 + e)/(1 - e) */
+    return (t - 1)/(t + 1);
 }

@@ -8,8 +8,6 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 /* A world of discs in the x-y plane, with a floor: y = 0. */
 static dem_world *yard(double friction, double rolling, dem_material *wood) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -80,7 +78,7 @@ static int stands(double friction) {
 }
 
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "02_pile", answer);
+    const int record = lesson_begin(argc, argv, "02_pile");
     const double rolling[3] = {0, 0.1, 0.5};
     double mean[3], error[3], low = 0.1, high = 0.5, overlap = 0;
     for (int row = 0; row < 3; row++) {
@@ -109,11 +107,13 @@ int main(int argc, char **argv) {
                   horizontally, lower log: T + T cos 30 = N sin 30, so T/N = tan 15 degrees = 0.268 <= mu
                   vertically: N = W/2 between two logs, and 3/2 W on the floor below each lower log
    Output:    slopes (mean and standard error of three runs): the second at least 2 degrees above the first, the third
-              at least 1 above the second; the smallest mu (within 3 %), by bisection: +- half of the last width
-   Exercises: check an answer with ./02_pile --check N VALUE
-   1  The logs do not slide on each other. How much friction must the floor have for three logs to stay?
-   2  Now the lower logs are one radius apart. How much friction between logs holds the upper one? */
+              at least 1 above the second; the smallest mu (within 3 %), by bisection: +- half of the last width */
+/* Exercises for ./02_pile --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "The logs do not slide on each other. All have the same size, but the upper one weighs {1: 0.4 to 4 by 0.1} times "
+    "as much as each lower one. How much friction must the floor have for three logs to stay?",
+    "Now the lower logs leave a gap of {1: 0.2 to 1.8 by 0.1} radii. What friction between logs holds the upper one?"};
 /* Marking. Stop here if you want to find the answers yourself. */
-static double answer(int exercise) {
-    return exercise == 1 ? tan(3.14159265/12)/3 : tan(asin(3.0/4)/2);
+double answer(int exercise, const double *x) {
+    return exercise == 1 ? x[0]/(2 + x[0])*tan(3.14159265/12) : tan(asin((2 + x[0])/4)/2);
 }

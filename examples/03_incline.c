@@ -8,10 +8,8 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "03_incline", answer);
+    const int record = lesson_begin(argc, argv, "03_incline");
     const double g = 9.81, mu = 0.2, radius = 0.01, pi = 3.14159265358979324;   /* m/s2, -, m */
     const int planar = 0;                                           /* 0: a ball; 1: a cylinder */
     const double k = planar ? 1/2.0 : 2/5.0;                        /* moment of inertia over m R^2 */
@@ -74,15 +72,17 @@ int main(int argc, char **argv) {
               k = 2/5: a = 5/7 g sin(angle) while tan(angle) <= 3.5 mu, here up to 34.99 degrees.
               On a steeper plane the contact slides, and friction continues to accelerate the rotation:
                   a = g (sin(angle) - mu cos(angle)),   R dw/dt = mu g cos(angle)/k
-   Output:    both accelerations at 10 to 50 degrees (within 0.2 %)
-   Exercises: check an answer with ./03_incline --check N VALUE
-   1  Above which angle, in degrees, does a ball with mu = 0.1 slide?
-   2  Above which angle does a cylinder with mu = 0.2 slide? To confirm it, set `planar` at the top of main to 1: a
-      planar world contains discs in the x-y plane, which rotate about z. Which rows are the same for ball and
-      cylinder, and why? */
-/* Marking. Stop here if you want to find the answers yourself. Exercise 2: a at 40 and 50 degrees is the same,
-   because a does not depend on k while the body slides. All other rows depend on k. */
-static double answer(int exercise) {
-    const double k = exercise == 1 ? 0.4 : 0.5, mu = exercise == 1 ? 0.1 : 0.2;
-    return atan(mu*(1 + 1/k))*180/3.14159265358979324;
+   Output:    both accelerations at 10 to 50 degrees (within 0.2 %) */
+/* Exercises for ./03_incline --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "Above which angle, in degrees, does a ball with mu = {0.1: 0.05 to 0.3 by 0.01} slide?",
+    "Above which angle, in degrees, does a cylinder with mu = {0.2: 0.05 to 0.3 by 0.01} slide? To confirm it, set "
+    "`mu` and `planar` at the top of main, `planar` to 1: a planar world contains discs in the x-y plane, which rotate "
+    "about z. Which rows are the same for ball and cylinder, and why?"};
+/* Marking. Stop here if you want to find the answers yourself.
+   Exercise 2: a is the same where both slide, because a does not depend on k while the body slides. All other rows
+   depend on k. */
+double answer(int exercise, const double *x) {
+    const double k = exercise == 1 ? 0.4 : 0.5;
+    return atan(x[0]*(1 + 1/k))*180/3.14159265358979324;
 }

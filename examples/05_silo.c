@@ -7,11 +7,8 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 enum { HEIGHTS = 4, SEEDS = 3 };
 static const double R = 2e-3, D = 24e-3, mu = 0.4, g = 9.81, pi = 3.14159265;   /* m, beads; m, tube; -; m/s2 */
-
 typedef struct column { double height, floor, wall, weight, overlap; } column;   /* m, N, N, N, radii */
 
 static double janssen(double rho_b, double K, double H) {
@@ -65,7 +62,7 @@ static int fill(int count, int seed, int record, column *out) {
 }
 
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "05_silo", answer), count[HEIGHTS] = {75, 150, 300, 450};
+    const int record = lesson_begin(argc, argv, "05_silo"), count[HEIGHTS] = {75, 150, 300, 450};
     double height[HEIGHTS], weight[HEIGHTS], load[HEIGHTS], error[HEIGHTS], worst = 0, overlap = 0;
     for (int i = 0; i < HEIGHTS; i++) {
         double loads[SEEDS];
@@ -107,13 +104,16 @@ int main(int argc, char **argv) {
                   W = rho_b g (pi D^2/4) lambda (1 - exp(-H/lambda)),   lambda = D/(4 mu K):
               never more than the weight of a column of height lambda. Friction points up only while beads move down
               along the wall, so the tube moves up slowly during the whole run.
-   Output:    loads on the floor at four heights, within 12 % of the formula with one fitted K between 0.3 and 1
-   Exercises: check an answer with ./05_silo --check N VALUE
-   1  A very high column of wheat: D = 1 m, rho_b = 800 kg/m3, K = 0.5, mu = 0.6. What does the floor carry, in N?
-   2  At which H/D does the floor carry half of the weight of the column, if mu = 0.4 and K = 0.5? */
+   Output:    loads on the floor at four heights, within 12 % of the formula with one fitted K between 0.3 and 1 */
+/* Exercises for ./05_silo --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "A very high column of wheat: D = {1: 0.5 to 2 by 0.1} m, rho_b = {800: 600 to 900 by 10} kg/m3, "
+    "K = {0.5: 0.3 to 0.7 by 0.05}, mu = {0.6: 0.3 to 0.7 by 0.05}. What does the floor carry, in N?",
+    "At which H/D does the floor carry half of the weight if mu = {0.4: 0.3 to 0.7 by 0.05}, "
+    "K = {0.5: 0.3 to 0.7 by 0.05}?"};
 /* Marking. Stop here if you want to find the answers yourself. */
-static double answer(int exercise) {
+double answer(int exercise, const double *x) {
     double s = 1;                                                   /* H/lambda: (1 - exp(-s))/s = 1/2 */
     for (int i = 0; i < 60; i++) s = 2*(1 - exp(-s));
-    return exercise == 1 ? 800*9.81*pi/4*1/(4*0.6*0.5) : s/(4*0.4*0.5);
+    return exercise == 1 ? x[1]*9.81*pi/4*pow(x[0], 3)/(4*x[3]*x[2]) : s/(4*x[0]*x[1]);
 }

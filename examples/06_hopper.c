@@ -7,8 +7,6 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 enum { COUNT = 480, SEEDS = 2, HOLES = 3 };
 static const double R = 2.5e-3, half = 0.045, thickness = 5e-3, g = 9.81;   /* m, half the hopper's width; m/s2 */
 
@@ -71,7 +69,7 @@ static int run_out(double hole, int seed, int record, outflow *f) {
 }
 
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "06_hopper", answer);
+    const int record = lesson_begin(argc, argv, "06_hopper");
     const double d = 2*R, k = 1.4, holes[HOLES] = {6*d, 7.5*d, 9*d};  /* m, -, m */
     double rate[HOLES], error[HOLES], C[HOLES], even[HOLES*SEEDS], bar, overlap = 0;
     puts("hole/d     flow [kg/s]           C   flow half empty/full");
@@ -107,11 +105,15 @@ int main(int argc, char **argv) {
                   W = C rho_b sqrt(g) (B - k d)^(3/2)       per depth; rho_b: bulk density
               For a round hole in three dimensions the exponent is 5/2, and C is about 0.58.
    Output:    flows through three holes. With k = 1.4 the exponent is 1.5 within 15 %, and C of discs is 0.7 to 1.2. A
-              hopper that is half empty flows at 0.8 to 1.1 of its first rate; water would flow at 0.71
-   Exercises: check an answer with ./06_hopper --check N VALUE
-   1  In this plane, with k = 1.4: by which factor is the flow through a hole of 16 d larger than through one of 8 d?
-   2  Round hole of 20 mm, grains of 2 mm, rho_b = 1500 kg/m3, C = 0.58, k = 1.4. What is the flow in kg/s? */
+              hopper that is half empty flows at 0.8 to 1.1 of its first rate; water would flow at 0.71 */
+/* Exercises for ./06_hopper --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "In this plane, with k = 1.4: by which factor is the flow through a hole of {16: 12 to 24 by 1} d larger than "
+    "through one of {8: 6 to 10 by 0.5} d?",
+    "Round hole of {20: 15 to 40 by 1} mm, grains of {2: 1 to 2.5 by 0.1} mm, rho_b = {1500: 1300 to 1700 by 50} "
+    "kg/m3, C = 0.58, k = 1.4. What is the flow in kg/s?"};
 /* Marking. Stop here if you want to find the answers yourself. */
-static double answer(int exercise) {
-    return exercise == 1 ? pow((16 - 1.4)/(8 - 1.4), 1.5) : 0.58*1500*sqrt(g)*pow(0.020 - 1.4*0.002, 2.5);
+double answer(int exercise, const double *x) {
+    if (exercise == 1) return pow((x[0] - 1.4)/(x[1] - 1.4), 1.5);
+    return 0.58*x[2]*sqrt(g)*pow(1e-3*(x[0] - 1.4*x[1]), 2.5);      /* mm to m */
 }

@@ -7,8 +7,6 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 static const double r = 2e-3, big = 7e-3, half = 0.022, g = 9.81, pi = 3.14159265;   /* m; m; m, half the box; m/s2 */
 
 typedef struct shaken { double rise, borne, overlap; } shaken;      /* small diameters; over the weight; radii */
@@ -77,7 +75,7 @@ static int shake(double gamma, double frequency, int periods, int seed, int reco
 }
 
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "07_brazil_nut", answer);
+    const int record = lesson_begin(argc, argv, "07_brazil_nut");
     shaken gentle, strong[3];
     double rises[3], borne[3], error, mean, overlap = 0;
     if (shake(0.8, 12, 12, 1, 0, &gentle)) return 1;
@@ -104,11 +102,13 @@ int main(int argc, char **argv) {
               walls drives convection that carries the middle up. For Gamma < 1 no gap opens. With any shaking the mean
               force of the box equals the weight: the impacts make up for the flights.
    Output:    rise of the large disc in small diameters: 2 to 16 in 3.6 s at Gamma = 3 (mean of three fillings), below
-              0.01 at Gamma = 0.8. The mean force equals the weight within 0.2 %
-   Exercises: check an answer with ./07_brazil_nut --check N VALUE
-   1  The amplitude is 3 mm. Up to which frequency, in Hz, does the heap never leave the floor?
-   2  Gamma = 3, 10 Hz. How long after passing its middle position upwards does the floor release the heap, in ms? */
+              0.01 at Gamma = 0.8. The mean force equals the weight within 0.2 % */
+/* Exercises for ./07_brazil_nut --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "The amplitude is {3: 0.5 to 8 by 0.1} mm. Up to which frequency, in Hz, does the heap never leave the floor?",
+    "Gamma = {3: 1.5 to 3.2 by 0.1}, {10: 5 to 30 by 1} Hz. How long after passing its middle position upwards does "
+    "the floor release the heap, in ms?"};
 /* Marking. Stop here if you want to find the answers yourself. */
-static double answer(int exercise) {
-    return exercise == 1 ? sqrt(g/0.003)/(2*pi) : 1e3*asin(1.0/3)/(2*pi*10);
+double answer(int exercise, const double *x) {
+    return exercise == 1 ? sqrt(g/(1e-3*x[0]))/(2*pi) : 1e3*asin(1/x[0])/(2*pi*x[1]);
 }

@@ -7,8 +7,6 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 enum { SIDES = 24, FRAMES = 80, LATE = 30 };    /* of the shell; of 0.02 s; first frame of the means */
 static const double R = 0.04, r = 1.5e-3, g = 9.81, pi = 3.14159265;    /* m, drum; m, grains; m/s2 */
 
@@ -80,7 +78,7 @@ static int turn(double froude, int record, turned *out) {
 }
 
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "08_drum", answer);
+    const int record = lesson_begin(argc, argv, "08_drum");
     const double froude[4] = {0.01, 0.05, 0.3, 3};
     turned t[4];
     double overlap = 0;
@@ -108,12 +106,14 @@ int main(int argc, char **argv) {
               Fr is the acceleration at the shell over g. At low Fr the charge rolls down a flat slope at
               its angle of repose; above about 0.1 it cascades; at Fr = 1 gravity at the top provides just the
               centripetal acceleration, and grains that rotate with the shell stay on it (centrifuging).
-   Output:    torque = M g x (3 %); slope 20 to 40 degrees at low Fr, more at Fr = 0.3; half above the axis at Fr = 3
-   Exercises: check an answer with ./08_drum --check N VALUE
-   1  At how many revolutions per minute does a drum of 1 m diameter begin to centrifuge?
-   2  2 kg fill half of a drum with a radius of 0.1 m; the slope is 30 degrees. What torque rotates the drum, in N m?
-      (The centre of mass of a half disc is 4 R/(3 pi) from its centre.) */
+   Output:    torque = M g x (3 %); slope 20 to 40 degrees at low Fr, more at Fr = 0.3; half above the axis at Fr = 3 */
+/* Exercises for ./08_drum --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "At how many revolutions per minute does a drum of {1: 0.2 to 4 by 0.1} m diameter begin to centrifuge?",
+    "A drum of radius {0.1: 0.05 to 0.3 by 0.01} m is half full. The grains have a mass of {2: 1 to 5 by 0.1} kg and a "
+    "slope of {30: 20 to 40 by 1} degrees. What torque rotates the drum, in N m? (The centre of mass of a half disc is "
+    "4 R/(3 pi) from its centre.)"};
 /* Marking. Stop here if you want to find the answers yourself. */
-static double answer(int exercise) {
-    return exercise == 1 ? sqrt(g/0.5)*60/(2*pi) : 2*g*4*0.1/(3*pi)*sin(30*pi/180);
+double answer(int exercise, const double *x) {
+    return exercise == 1 ? sqrt(2*g/x[0])*60/(2*pi) : x[1]*g*4*x[0]/(3*pi)*sin(x[2]*pi/180);
 }

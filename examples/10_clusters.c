@@ -9,8 +9,6 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 enum { COUNT = 80, SEEDS = 2 };
 static const double r = 1e-3, pi = 3.14159265;                      /* m, of the spheres of a tetrahedron */
 
@@ -76,7 +74,7 @@ static double heap(int tetrahedra, int seed, int record, double *inertia, double
 }
 
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "10_clusters", answer);
+    const int record = lesson_begin(argc, argv, "10_clusters");
     double slope[2][SEEDS], mean[2], error[2], inertia = 0, overlap = 0;
     for (int kind = 0; kind < 2; kind++) {
         for (int seed = 0; seed < SEEDS; seed++) {
@@ -98,9 +96,14 @@ int main(int argc, char **argv) {
               axis. The centres are sqrt(3/2) r from the middle; by symmetry the mean a^2 is 2/3 of that squared, r^2.
               So  I = (2/5 + 1) M r^2;   a ball of the same volume: 2/5 M (4^(1/3) r)^2 = 1.008 M r^2
               A cone of height H and radius L has the mean height H/4 and the mean distance L/2 from its axis.
-   Output:    I/(M r^2) = 1.4 within 0.1 %; tetrahedra are steeper by 3 degrees or more (mean of two runs)
-   Exercises: check an answer with ./10_clusters --check N VALUE
-   1  What is I/(M r^2) of three touching spheres in a row, about an axis across the row? (dem_shape_get confirms it.)
-   2  A cone of grains has the mean height 3 mm and the mean distance 12 mm from its axis. Its slope in degrees? */
+   Output:    I/(M r^2) = 1.4 within 0.1 %; tetrahedra are steeper by 3 degrees or more (mean of two runs) */
+/* Exercises for ./10_clusters --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "What is I/(M r^2) of {3: 2 to 12 by 1} touching spheres in a row, about an axis through the middle of the row and "
+    "across it? (dem_shape_get confirms it.)",
+    "A cone of grains has the mean height {3: 2 to 4 by 0.1} mm and the mean distance {12: 10 to 20 by 0.5} mm from "
+    "its axis. What is its slope in degrees?"};
 /* Marking. Stop here if you want to find the answers yourself. */
-static double answer(int exercise) { return exercise == 1 ? 0.4 + 2*4/3.0 : atan(4*3/(2*12.0))*180/pi; }
+double answer(int exercise, const double *x) {
+    return exercise == 1 ? 0.4 + (x[0]*x[0] - 1)/3 : atan(4*x[0]/(2*x[1]))*180/pi;
+}

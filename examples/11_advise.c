@@ -10,8 +10,6 @@
 #include "../dem.h"
 #include "lesson.h"
 
-static double answer(int exercise);
-
 /* Returns the mean power since the loads were reset, W: an observable. Any function of the world may be one; means have
    smaller statistical errors than values of one moment. */
 static double power(const dem_world *world, void *drum) {
@@ -20,7 +18,7 @@ static double power(const dem_world *world, void *drum) {
 }
 
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "11_advise", answer);
+    const int record = lesson_begin(argc, argv, "11_advise");
     const double speed = 5, g = 9.81;                               /* rad/s, m/s2 */
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.planar = 1;
@@ -95,13 +93,16 @@ int main(int argc, char **argv) {
    Theory:    A step must resolve a collision, which by Hertz's law lasts 2.87 (m^2/(E^2 R v))^(1/5), with the reduced
               mass m, modulus E, radius R and the speed v. This is proportional to E^(-2/5): grains that are 10 times
               softer allow steps 2.5 times as long. The theorem of lesson 8 gives the power, too: w M g x.
-   Output:    the table of trials with advice; steps longer by 10^(2/5) = 2.51 (within 10 %); power = w M g x (5 %)
-   Exercises: check an answer with ./11_advise --check N VALUE
-   1  By which factor does the step grow if the modulus is 100 times smaller?
-   2  Glass beads of 3 mm diameter (2500 kg/m3, 70 GPa, Poisson's ratio 0.23) collide at 1 m/s. How long do they
-      touch, in us? (Reduced: m/2, R/2, E/(2 (1 - nu^2)). dem_coefficients_get confirms it if impact_speed is 1.) */
+   Output:    the table of trials with advice; steps longer by 10^(2/5) = 2.51 (within 10 %); power = w M g x (5 %) */
+/* Exercises for ./11_advise --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "By which factor does the step grow if the modulus is {100: 5 to 500 by 5} times smaller?",
+    "Glass beads of {3: 1 to 6 by 0.1} mm diameter (2500 kg/m3, 70 GPa, Poisson's ratio 0.23) collide at "
+    "{1: 0.2 to 3 by 0.1} m/s. How long do they touch, in us? (Reduced: m/2, R/2, E/(2 (1 - nu^2)). "
+    "dem_coefficients_get confirms it if impact_speed is that speed.)"};
 /* Marking. Stop here if you want to find the answers yourself. */
-static double answer(int exercise) {
-    const double R = 1.5e-3, m = 4*3.14159265/3*R*R*R*2500, E = 70e9/(2*(1 - 0.23*0.23));
-    return exercise == 1 ? pow(100, 0.4) : 1e6*2.87*pow(m*m/4/(E*E*R/2*1), 0.2);
+double answer(int exercise, const double *x) {
+    if (exercise == 1) return pow(x[0], 0.4);
+    const double R = x[0]/2000, m = 4*3.14159265/3*R*R*R*2500, E = 70e9/(2*(1 - 0.23*0.23));
+    return 1e6*2.87*pow(m*m/4/(E*E*R/2*x[1]), 0.2);
 }

@@ -11,8 +11,6 @@
 #include "lesson.h"
 #include <time.h>
 
-static double answer(int exercise);
-
 enum { PLAIN, FRICTION, ROLLING, SIZES, LEDGER, FIELD, ROWS, TURNS = 9, BEADS = 400 };
 static const char *names[ROWS] = {"smooth beads, all alike", "friction", "rolling friction", "two sizes",
                                   "ledger of energy", "user-defined force field"};
@@ -23,7 +21,6 @@ static dem_vec3 air(dem_vec3 position, dem_vec3 velocity, dem_real radius, dem_r
     dem_real drag = (dem_real)(-6*3.1416*1.8e-5)*radius;            /* N s/m */
     return dem_vec3_make(drag*velocity.x, drag*velocity.y, drag*velocity.z);
 }
-
 /* Returns a bed after 0.28 s, with the first `things` effects of the list. */
 static dem_world *bed(int things, int record) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -67,7 +64,7 @@ static int lower_first(const void *a, const void *b) {
 }
 
 int main(int argc, char **argv) {
-    const int record = lesson_begin(argc, argv, "12_effects", answer);
+    const int record = lesson_begin(argc, argv, "12_effects");
     dem_world *world[ROWS];
     double time[ROWS][TURNS], contacts[ROWS], step[ROWS];
     for (int row = 0; row < ROWS; row++) world[row] = bed(row, record && row == ROWS - 1);
@@ -110,10 +107,13 @@ int main(int argc, char **argv) {
               contact has one unknown, its normal force; a bead at rest gives three equations, its balance of forces: 3
               contacts per bead. With friction a contact has three unknowns, a bead six equations: 2 are enough.
    Output:    the cost of each effect. All five together make a step 1 to 8 times as long. Contacts over beads, each
-              contact counted once: 2.5 to 3.1 smooth (some are open while the bed vibrates), 1.8 to 2.6 with friction
-   Exercises: check an answer with ./12_effects --check N VALUE
-   1  Friction makes a step 1.84 times as long, rolling friction another 1.34 times, the ledger another 1.12 times.
-      What is the factor of all three?
-   2  A glass bead (2500 kg/m3) of R = 20 um falls in the field `air`. What is its terminal speed, in m/s? */
+              counted once: 2.5 to 3.1 smooth (some are open while the bed vibrates), 1.8 to 2.6 with friction */
+/* Exercises for ./12_effects --check N VALUE. {2: 1 to 3 by 0.1} is 2 or, for --seed NAME, in that range. */
+const char *const exercises[2] = {
+    "Friction makes a step {1.84: 1.2 to 2.4 by 0.02} times as long, rolling friction another {1.34: 1.1 to 1.6 "
+    "by 0.02} times, the ledger another {1.12: 1.04 to 1.5 by 0.02} times. What is the factor of all three?",
+    "What is the terminal speed, in m/s, of a glass bead (2500 kg/m3, R = {20: 8 to 28 by 1} um) in the field `air`?"};
 /* Marking. Stop here if you want to find the answers yourself. Drag equals weight: 6 pi eta R v = m g. */
-static double answer(int exercise) { return exercise == 1 ? 1.84*1.34*1.12 : 2*2500*9.81*20e-6*20e-6/(9*1.8e-5); }
+double answer(int exercise, const double *x) {
+    return exercise == 1 ? x[0]*x[1]*x[2] : 2*2500*9.81*1e-12*x[0]*x[0]/(9*1.8e-5);
+}
