@@ -97,7 +97,7 @@ if [ "$1" = -one ]; then                       # DIR PROGRAM
             done
             others="$others $(value "$drawn" "$2" 1)"
         done
-        [ $((3*accepted)) -lt "$pairs" ] || wrong "exercise $exercise: answers of others are right in $accepted of $pairs pairs of names"
+        [ $((4*accepted)) -lt "$pairs" ] || wrong "exercise $exercise: answers of others are right in $accepted of $pairs pairs of names"
         shift 2
     done
     "$program" --seed 'Grace Hopper' | sed 's/Grace Hopper//' > seeded
