@@ -131,7 +131,7 @@ law: $(if $(LAW),build/dem.o,build/exam) ## examine a contact law and draw its c
 verdicts: build/dem.o build/01_bounce ### laws as students write them, and the verdict of the exam on each
 	@CC="$(CC)" LINK="$(LINK)" sh tests/verdicts.sh build/dem.o
 
-marks: build/dem.o $(if $(wildcard $(DIR)/answers.txt),$(LESSONS)) ### examine the laws and answers of a class: make marks DIR=folder writes folder/marks.csv; SEEDS=1
+marks: build/dem.o $(if $(wildcard $(DIR)/answers.txt),$(LESSONS)) ### examine the laws and answers of a class: make marks DIR=folder writes folder/marks.csv; SEEDS=1: answers.txt has answers to the exercises that build/05_silo --seed NAME prints
 	@CC="$(CC)" LINK="$(LINK)" SEEDS=$(SEEDS) sh examples/marks.sh "$(DIR)" build/dem.o
 
 lessons: $(LESSONS) ## build and run the twelve lessons, record replays in build/out/NAME, check their marks

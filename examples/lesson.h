@@ -72,7 +72,7 @@ static inline double lesson_draw(uint64_t seed, int exercise, int index, double 
     return low + step*(double)((hash >> 32)%choices);
 }
 /* Writes the numbers of an exercise: the first in the braces or, for a name with the hash `seed`, one of the range.
-   If `print` is 1, also prints the text with these numbers, and a line with the numbers alone, for scripts. */
+   Also prints the text with these numbers if `print` is 1. */
 static inline void lesson_exercise(int exercise, uint64_t seed, int print, double x[LESSON_NUMBERS]) {
     int column = print ? printf("%d  ", exercise) : 0, count = 0;
     for (const char *text = exercises[exercise - 1]; *text; text++) {
@@ -87,11 +87,7 @@ static inline void lesson_exercise(int exercise, uint64_t seed, int print, doubl
         } else if (print && *text == ' ' && column > 90) column = printf("\n   ") - 1;
         else if (print) column += printf("%c", *text);
     }
-    if (print) {
-        printf("\n   numbers:");
-        for (int i = 0; i < count; i++) printf(" %g", x[i]);
-        puts("");
-    }
+    if (print) puts("");
 }
 /* Prints the exercises with the numbers of a name and ends the program. */
 static inline void lesson_exercises(const char *program, const char *name, uint64_t seed) {

@@ -1,8 +1,9 @@
 # sh examples/marks.sh DIR DEM.o: examines the work of a class and writes DIR/marks.csv. `make marks DIR=folder` calls it.
 #   DIR/NAME.h        a contact law of the student NAME with its row LAW (docs/laws.md), as the law lab saves it: one point for
 #                     each line of the exam that it passes, but for "quick"
-#   DIR/answers.txt   lines "NAME LESSON EXERCISE VALUE", for example "Ada 05_silo 1 6540": one point for a right answer.
-#                     With SEEDS=1 the numbers of the exercise are those of NAME (build/05_silo --seed Ada)
+#   DIR/answers.txt   lines "NAME LESSON EXERCISE VALUE", for example "Ada 05_silo 1 5136": one point for a right answer.
+#                     With SEEDS=1 the numbers of the exercise are those of NAME (build/05_silo --seed Ada).
+#                     NAME has no blank; Ada_Lovelace has the numbers of "Ada Lovelace"
 # Columns of marks.csv: student, task, result, points, of, found. A law that crashes, does not end, ends the program or does
 # not compile gets 0 points and says why. Each law has LIMIT seconds (60) to compile, and 20 for a line of the exam.
 # The last line is "N marked"; the exit code is 0 unless nothing was found to mark.
