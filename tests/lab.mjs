@@ -56,7 +56,7 @@ for (const [text, line, column, word] of [
 }
 
 // ---- the shipped laws: curves, lines of the exam, scenes as compiled by C ----
-let equal = 0, all = 0;
+let equal = 0, worked = 0, all = 0;
 for (const name of Object.keys(files)) {
   const told = execFileSync(`${dir}/lab_${name.replace('.h', '')}`, { maxBuffer: 1 << 26 }).toString().trim().split('\n');
   const lab = await lab_engine(module, header, files), e = lab.open(files[name]);
@@ -75,14 +75,17 @@ for (const name of Object.keys(files)) {
   }
   check(worst < 1e-9 && same === lines, `${name}: curves differ by ${worst.toExponential(0)} of the largest value, ${same} of ${lines} lines alike`);
   for (let k = 0; k < 5; k++) {
-    const [, , steps, measure, hash] = told[at++].split(' '), own = [40, 8, 0.07, 30, 0.1][k];
+    const [, , steps, measure, hash, rate] = told[at++].split(' '), own = [40, 8, 0.07, 30, 0.1][k];
     const e = lab.scene(k, 200, 0.5, own) ?? lab.step(+steps);
-    check(!e && Math.abs(lab.dem.lab_measure() - measure) <= 1e-6*Math.max(1, Math.abs(measure)), `${name}: scene ${k}, ${steps} steps: ` +
-      (e ? e.text : `measure ${lab.dem.lab_measure().toPrecision(6)}`));
+    const near = (a, b) => Math.abs(a - b) <= 1e-6*Math.max(1, Math.abs(b)), mine = lab.dem.lab_rate();
+    check(!e && near(lab.dem.lab_measure(), measure) && near(1e6*mine, 1e6*rate), `${name}: scene ${k}, ` +
+      `${steps} steps: ` + (e ? e.text : `measure ${lab.dem.lab_measure().toPrecision(6)}, rate ${mine.toPrecision(6)}`));
+    worked += k === 0 && mine > 0;
     equal += BigInt.asUintN(64, lab.dem.lesson_hash()).toString(16).padStart(16, '0') === hash;
     all++;
   }
 }
+check(worked > 0, `the drum works on the grains: power > 0 with ${worked} laws`);
 console.log(`      ${equal} of ${all} scenes end with the same digest`);
 
 // ---- laws of a class: what the exam says of each in C, it says here ----

@@ -20,7 +20,7 @@ static struct {
     dem_real memory[DEM_LAW_MEMORY + GUARD], reals[4][DEM_BODY_REALS];
     dem_contact_force force;
 } zone;
-static struct { exam e; lab_row row; int beyond; exam_curve curve, other; char found[300]; double energy; } lab;
+static struct { exam e; lab_row row; int beyond; exam_curve curve, other; char found[300]; double energy, amount, since; } lab;
 
 #ifdef __wasm__
 __attribute__((import_module("lab"), import_name("law")))
@@ -158,6 +158,7 @@ LESSON_API(lab_scene) int lab_scene(int scene, int grains, double friction, doub
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_advice advice;
     lab.beyond = 0;
+    lab.amount = lab.since = 0;
     lab.e.material.friction = friction;
     r = (dem_real)lab.e.radius; broad = 70*r; change = with_law;
     if (scene < GRAINS_TWO) return lesson_begin(scene, grains, friction, lab.e.material.restitution, own, 1.2);
@@ -221,13 +222,22 @@ LESSON_API(lab_measure) double lab_measure(void) {
     }
     return lesson_measure();
 }
+/* Mean since the last call: the power of the drum on the grains, W, or the grains per second that leave the hopper. */
+LESSON_API(lab_rate) double lab_rate(void) {
+    const double amount = lab.amount, since = lab.since;
+    dem_wall_loads loads;
+    if (now.scene == HOPPER) lab.amount = lesson_measure();
+    else if (now.scene == DRUM && dem_wall_loads_get(now.world, now.moving, &loads) == DEM_OK) lab.amount = loads.work;
+    lab.since = lesson_time();
+    return lab.since > since ? (lab.amount - amount)/(lab.since - since) : 0;
+}
 /* Half the size of what is to be seen, m. */
 LESSON_API(lab_size) double lab_size(void) { return now.R; }
 
 #ifndef __wasm__
 int main(void) {
     static const double own[5] = {40, 8, 0.07, 30, 0.1};
-    static const int steps[5] = {300, 300, 300, 2000, 300};
+    static const int steps[5] = {6000, 300, 300, 2000, 300};
     if (lab_open(&row)) { fprintf(stderr, "%s\n", lab_found()); return 1; }
     for (int k = 0; k < CURVES; k++) {
         const int count = lab_curve(k);
@@ -240,7 +250,7 @@ int main(void) {
     }
     for (int k = 0; k < 5; k++) {
         if (lab_scene(k, 200, 0.5, own[k]) || lesson_step(steps[k])) { printf("scene %d: %s\n", k, lesson_error()); continue; }
-        printf("scene %d %.0f %.17g %016llx\n", k, lesson_steps(), lab_measure(), (unsigned long long)lesson_hash());
+        printf("scene %d %.0f %.17g %016llx %.17g\n", k, lesson_steps(), lab_measure(), (unsigned long long)lesson_hash(), lab_rate());
     }
     return 0;
 }
