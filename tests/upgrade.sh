@@ -256,10 +256,27 @@ if [ "$1" = long ] && git cat-file -e $old:dem.h 2>/dev/null; then
             (cd $dir/results/$which.run && ../$program.$which "$@" > $program.txt 2>/dev/null) ||
                 { echo "$program.$which ends with an error"; return 1; }
         done
-        diff $dir/results/old.run/$program.txt $dir/results/new.run/$program.txt
     }
-    try "collide.c prints what it printed with the header of $old" results collide
-    try "shear5.c prints what it printed with the header of $old" results shear5 40
+    # Trajectories have moved in their last bits since then. Impacts agree in all digits but those of the ledger's residual;
+    # the mean friction of sheared grains agrees within four of its errors, both printed as "mean +- error".
+    collide() {
+        results collide || return 1
+        for which in old new; do sed 's/, residual.*//' $dir/results/$which.run/collide.txt > $dir/results/$which.txt; done
+        diff $dir/results/old.txt $dir/results/new.txt
+    }
+    shear() {
+        results shear5 40 || return 1
+        awk 'NR == FNR { was[FNR] = $0; rows++; next }
+            { n = split(was[FNR], a, " ")
+              if (split($0, b, " ") != n) bad = 1
+              for (i = 2; i < n; i++) if (b[i] == "+-") {
+                  d = a[i - 1] - b[i - 1]; e = (a[i + 1] + 0)^2 + (b[i + 1] + 0)^2; all++
+                  if (!(d*d <= 16*e)) { print was[FNR] " | " $0; bad = 1 }
+              } }
+            END { exit bad || FNR != rows || all < 6 }' $dir/results/old.run/shear5.txt $dir/results/new.run/shear5.txt
+    }
+    try "collide.c prints the same impacts as with the header of $old" collide
+    try "shear5.c prints the same mean friction as with the header of $old" shear
 elif [ "$1" = long ]; then echo "SKIP: no history of git here: results are not compared with those of $old"; fi
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]
